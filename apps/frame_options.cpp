@@ -1,0 +1,240 @@
+#include "obscura/apps/frame_options.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <string_view>
+#include <vector>
+
+#include "obscura/raster/srgb.h"
+#include "obscura/raster/view.h"
+
+namespace obscura::apps {
+namespace {
+
+constexpr int kMaxThreads = 1024;
+
+// The whole of `text` as a number, whatever the locale; empty if it is none, infinite or NaN.
+template <class T>
+std::optional<T> numberOf(std::string_view text) {
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !(value - value == 0)) return std::nullopt;
+  return value;
+}
+
+std::optional<glm::dvec3> vectorOf(std::string_view text) {
+  glm::dvec3 v;
+  for (int c = 0; c < 3; ++c) {
+    const size_t comma = c < 2 ? text.find(',') : text.size();
+    if (comma == text.npos) return std::nullopt;
+    const std::optional<double> component = numberOf<double>(text.substr(0, comma));
+    if (!component) return std::nullopt;
+    v[c] = *component;
+    text.remove_prefix(std::min(comma + 1, text.size()));
+  }
+  return v;
+}
+
+// "r,g,b" is linear, "#rrggbb" is sRGB.
+std::optional<glm::vec3> colorOf(const std::string& text) {
+  if (text.size() == 7 && text[0] == '#') {
+    uint32_t rgb = 0;
+    const auto [end, error] = std::from_chars(text.data() + 1, text.data() + 7, rgb, 16);
+    if (error != std::errc() || end != text.data() + 7) return std::nullopt;
+    glm::vec3 color;
+    for (int c = 0; c < 3; ++c) color[c] = float(raster::linearFromSrgb((rgb >> (16 - 8 * c) & 0xFF) / 255.0));
+    return color;
+  }
+  const std::optional<glm::dvec3> v = vectorOf(text);
+  if (!v || !(v->x >= 0 && v->y >= 0 && v->z >= 0 && std::max({v->x, v->y, v->z}) < 1e30)) return std::nullopt;
+  return glm::vec3(*v);
+}
+
+bool readSize(const std::string& text, int& width, int& height) {
+  const size_t x = text.find_first_of("xX");
+  if (x == text.npos) return false;
+  const auto w = numberOf<int>(std::string_view(text).substr(0, x)), h = numberOf<int>(std::string_view(text).substr(x + 1));
+  if (!w || !h || *w < 1 || *h < 1 || *w > raster::kMaxImageSize || *h > raster::kMaxImageSize) return false;
+  width = *w;
+  height = *h;
+  return true;
+}
+
+std::string shown(double v) {
+  char text[32];
+  return std::string(text, std::to_chars(text, text + sizeof text, v).ptr);
+}
+
+std::string shown(const glm::vec3& v) { return shown(v.x) + "," + shown(v.y) + "," + shown(v.z); }
+
+// An option whose text `read` turns into a value; false: refused, with what was expected.
+template <class Read>
+CLI::Option* addRead(CLI::App& app, const std::string& name, const std::string& type, const std::string& what, Read read) {
+  const auto set = [name, type, read](const std::string& text) {
+    if (!read(text)) throw CLI::ValidationError(name, "\"" + text + "\" is not " + type);
+  };
+  return app.add_option_function<std::string>(name, set, what)->type_name(type);
+}
+
+template <class T>
+using Names = std::vector<std::pair<std::string, T>>;
+
+template <class T>
+CLI::Option* addChoice(CLI::App& app, const std::string& name, const Names<T>& names, T& value, const std::string& what) {
+  std::string list, current;
+  for (const auto& [text, v] : names) {
+    list += (list.empty() ? "" : "|") + text;
+    if (v == value) current = text;
+  }
+  return addRead(app, name, list, what + " [" + current + "]", [names, &value](const std::string& text) {
+    const auto found = std::find_if(names.begin(), names.end(), [&](const auto& n) { return n.first == text; });
+    if (found != names.end()) value = found->second;
+    return found != names.end();
+  });
+}
+
+CLI::Option* addInteger(CLI::App& app, const std::string& name, int least, int most, int& value, const std::string& what) {
+  const std::string type = std::to_string(least) + "..." + std::to_string(most);
+  return addRead(app, name, type, what, [=, &value](const std::string& text) {
+    const std::optional<int> n = numberOf<int>(text);
+    if (!n || *n < least || *n > most) return false;
+    value = *n;
+    return true;
+  });
+}
+
+CLI::Option* addLength(CLI::App& app, const std::string& name, bool zero, std::optional<double>& value,
+                       const std::string& what, const std::string& otherwise) {
+  const std::string is = value ? shown(*value) : otherwise;
+  return addRead(app, name, "LENGTH", what + ", scene units [" + is + "]", [&value, zero](const std::string& text) {
+    const std::optional<double> v = numberOf<double>(text);
+    if (!v || !(zero ? *v >= 0 : *v > 0)) return false;
+    value = v;
+    return true;
+  });
+}
+
+void addVector(CLI::App& app, const std::string& name, std::optional<glm::dvec3>& value, const std::string& what) {
+  addRead(app, name, "X,Y,Z", what, [&value](const std::string& text) { return bool(value = vectorOf(text)); })->group("View");
+}
+
+void addColor(CLI::App& app, const std::string& name, glm::vec3& value, const std::string& what) {
+  addRead(app, name, "R,G,B|#RRGGBB", what + "; R,G,B are linear, #RRGGBB is sRGB [" + shown(value) + "]",
+          [&value](const std::string& text) {
+            const std::optional<glm::vec3> color = colorOf(text);
+            if (color) value = *color;
+            return bool(color);
+          })->group("View");
+}
+
+raster::Target instructionSet(const std::string& text) {
+  const std::optional<raster::Target> wanted = raster::targetFromName(text);
+  const std::vector<raster::Target> here = raster::supportedTargets();
+  if (wanted && (*wanted == raster::Target::Auto || std::find(here.begin(), here.end(), *wanted) != here.end())) return *wanted;
+  std::string names = "auto";
+  for (raster::Target t : here) names += std::string(", ") + raster::targetName(t);
+  throw CLI::ValidationError("--target", "\"" + text + (wanted ? "\" is not there on this machine" : "\" is neither a point X,Y,Z nor an instruction set") +
+                                             "; there are: " + names);
+}
+
+// One name for two things that cannot be confused: the point a camera looks at, and the instruction set to run on.
+void addTarget(CLI::App& app, FrameOptions& o) {
+  const auto read = [&o](const std::vector<std::string>& texts) {
+    int points = 0, names = 0;
+    for (const std::string& text : texts) {
+      const std::optional<glm::dvec3> point = vectorOf(text);
+      if (point) o.camera.target = point;
+      else o.raster.target = instructionSet(text);
+      if (++(point ? points : names) > 1) throw CLI::ValidationError("--target", "\"" + text + "\" is the second of its kind");
+    }
+  };
+  app.add_option_function<std::vector<std::string>>(
+         "--target", read,
+         "X,Y,Z: what the camera of your own looks at [the middle of the scene]. NAME: instruction set to run on, which "
+         "changes no bit: auto, scalar, ssse3, sse4, avx2, avx3 or neon [auto: the best there is]. Both may be given")
+      ->type_name("X,Y,Z|NAME")->allow_extra_args(false)->group("View");
+}
+
+void addView(CLI::App& app, FrameOptions& o) {
+  const std::string size = std::to_string(o.width) + "x" + std::to_string(o.height);
+  addRead(app, "--size", "WxH", "of the image in pixels, up to " + std::to_string(raster::kMaxImageSize) + " a side [" + size + "]",
+          [&o](const std::string& text) { return readSize(text, o.width, o.height); })->group("View");
+  app.add_option("--camera", o.camera.name, "camera of the file, by its name, its node's name or its index [the first; without one: a view of everything]")
+      ->type_name("NAME|INDEX")->group("View");
+  addVector(app, "--eye", o.camera.eye, "a camera of your own: where it is");
+  addTarget(app, o);
+  addVector(app, "--up", o.camera.up, "what is up for it [0,1,0]");
+  addRead(app, "--fov", "DEGREES", "vertical field of view, between 0 and 180; replaces the file camera's, too [45]",
+          [&o](const std::string& text) {
+            o.camera.yFovDegrees = numberOf<double>(text);
+            return o.camera.yFovDegrees && *o.camera.yFovDegrees > 0 && *o.camera.yFovDegrees < 180;
+          })->group("View");
+  addInteger(app, "--scene", 0, 1 << 30, o.scene, "which of the file's scenes [the default one]")->type_name("INDEX")->group("View");
+  addColor(app, "--background", o.background, "colour where nothing is seen");
+  addColor(app, "--ambient-light", o.ambientLight, "the light that comes from everywhere");
+}
+
+void addAmbient(CLI::App& app, FrameOptions& o) {
+  using post::Membership;
+  using post::Occlusion;
+  using post::TransferAlbedo;
+  const char* group = "Ambient transfer";
+  const Names<bool> onOff = {{"on", true}, {"off", false}};
+  const auto fraction = [](double f, const char* of) { return shown(f) + " x " + of; };
+  addChoice(app, "--ambient", {{"off", Occlusion::None}, {"obscurance", Occlusion::Obscurance}, {"transfer", Occlusion::Transfer}},
+            o.ambient, "what dims the ambient light: nothing, O or W")->group(group);
+  addChoice(app, "--albedo", {{"own", TransferAlbedo::Own}, {"neighbour", TransferAlbedo::Neighbour}}, o.transfer.albedo,
+            "W from the pixel's own albedo, or from that of what occludes it")->group(group);
+  addInteger(app, "--samples", 1, 64, o.transfer.samples, "n, rays per pixel [" + std::to_string(o.transfer.samples) + "]")->group(group);
+  addInteger(app, "--steps", 1, 4, o.transfer.steps, "m, test points per ray [" + std::to_string(o.transfer.steps) + "]")->group(group);
+  addLength(app, "--radius", false, o.radius, "R, how far occluders reach",
+            fraction(engine::kDefaultRadius, "the scene's size (the diagonal of its bounds)"))->group(group);
+  addChoice(app, "--membership", {{"classic", Membership::Classic}, {"linear", Membership::Linear},
+                                  {"sqrt", Membership::Sqrt}, {"exponential", Membership::Exponential}},
+            o.transfer.membership, "how open a direction is by the distance of its occluder")->group(group);
+  addLength(app, "--bias", true, o.bias, "how deep behind a surface counts as inside", fraction(engine::kDefaultBias, "R"))->group(group);
+  addChoice(app, "--interleave", onOff, o.transfer.interleave, "other rays in each pixel of a 4x4 pattern")->group(group);
+  addChoice(app, "--filter", onOff, o.transfer.filter, "4x4 box over pixels of nearly the same depth")->group(group);
+  addLength(app, "--filter-threshold", false, o.filterThreshold, "difference of depth that the filter stops at",
+            fraction(engine::kDefaultFilterThreshold, "R"))->group(group);
+}
+
+void addExecution(CLI::App& app, FrameOptions& o) {
+  const char* group = "Execution (changes no bit of the result; see also --target NAME)";
+  addInteger(app, "--threads", 0, kMaxThreads, o.raster.threads, "0: one per core [" + std::to_string(o.raster.threads) + "]")->group(group);
+  addChoice(app, "--tile", {{"16", 16}, {"32", 32}, {"64", 64}}, o.raster.tile, "pixels a side of a tile")->group(group);
+  app.add_flag_callback("--no-skip", [&o] { o.raster.skip = false; }, "cull nothing, rasterize every tile")->group(group);
+  app.add_flag("--reference", o.reference, "everything by the short scalar code that the fast one is checked against; slow")->group(group);
+}
+
+}  // namespace
+
+void FrameOptions::addTo(CLI::App& app) {
+  addView(app, *this);
+  addAmbient(app, *this);
+  addExecution(app, *this);
+}
+
+engine::Result<ResolvedFrame> FrameOptions::resolve(const engine::Scene& in) const {
+  ResolvedFrame out;
+  engine::Result<raster::Camera> chosen = engine::chooseCamera(in, camera, width, height);
+  if (!chosen) return chosen.error();
+  const double r = radius.value_or(engine::kDefaultRadius * engine::sceneSize(in));
+  out.frame.width = width;
+  out.frame.height = height;
+  out.frame.camera = *chosen;
+  out.frame.ambient = ambient;
+  out.frame.ambientLight = ambientLight;
+  out.frame.background = background;
+  out.frame.transfer = transfer;
+  out.frame.transfer.radius = float(r);
+  out.frame.transfer.bias = float(bias.value_or(engine::kDefaultBias * r));
+  out.frame.transfer.filterThreshold = float(filterThreshold.value_or(engine::kDefaultFilterThreshold * r));
+  out.raster = raster;
+  out.reference = reference;
+  return out;
+}
+
+}  // namespace obscura::apps

@@ -1,0 +1,44 @@
+// In: the command line's options that describe a frame.  Out: what engine::Renderer takes.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "obscura/engine/camera_choice.h"
+#include "obscura/engine/frame.h"
+#include "obscura/engine/result.h"
+#include "obscura/engine/scene.h"
+#include "obscura/raster/rasterizer.h"
+
+namespace obscura::apps {
+
+// A frame of one scene: with its camera, and lengths that suit its size.
+struct ResolvedFrame {
+  engine::FrameSettings frame;  // aovs and display are the program's business
+  raster::Settings raster;
+  bool reference = false;
+};
+
+// The members' initial values are the options' defaults and show up in --help: a program that wants others sets them
+// before addTo(). The object must outlive the parsing.
+struct FrameOptions {
+  int width = 800, height = 600;
+  int scene = -1;  // of the file; -1: its default
+  engine::CameraRequest camera;
+  glm::vec3 background{0}, ambientLight{1};  // linear
+  post::Occlusion ambient = post::Occlusion::Transfer;
+  post::AmbientSettings transfer;                          // but for the three lengths below
+  std::optional<double> radius, bias, filterThreshold;     // scene units; empty: a fraction of the scene's size
+  raster::Settings raster;
+  bool reference = false;
+
+  // Values that cannot be are refused while parsing, with a CLI::ValidationError.
+  void addTo(CLI::App& app);
+
+  // Usage: no such camera, or lengths that are no number in this scene.
+  engine::Result<ResolvedFrame> resolve(const engine::Scene& scene) const;
+};
+
+}  // namespace obscura::apps

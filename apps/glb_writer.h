@@ -1,0 +1,66 @@
+// In: meshes, materials, textures, nodes.  Out: the bytes of a .glb file (glTF 2.0).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+namespace obscura::apps {
+
+struct GlbTexture {  // becomes an embedded PNG, repeated in both directions, with mip maps
+  std::string name;
+  int width = 0, height = 0;
+  std::vector<uint8_t> rgba;  // sRGB and straight alpha, row 0 on top
+};
+
+struct GlbMaterial {
+  std::string name;
+  glm::dvec3 baseColor{1};  // linear
+  int texture = -1;         // into GlbScene::textures
+  double alphaCutoff = 0;   // above 0: alphaMode MASK
+  bool doubleSided = false;
+};
+
+struct GlbMesh {
+  std::string name;
+  int material = 0;
+  std::vector<glm::vec3> positions, normals;  // of the same length
+  std::vector<glm::vec2> uvs;                 // of the same length, or empty
+  std::vector<glm::vec3> colors;              // the same; linear, 0 ... 1, stored as 16-bit fractions
+  std::vector<uint32_t> indices;
+};
+
+struct GlbNode {
+  std::string name;
+  int mesh = -1;
+  glm::dvec3 translation{0};
+  std::array<double, 4> rotation{0, 0, 0, 1};  // unit quaternion x, y, z, w
+  glm::dvec3 scale{1};
+  std::vector<int> children;  // of higher index
+};
+
+struct GlbCamera {
+  std::string name;
+  glm::dvec3 eye{0}, target{0, 0, -1};  // up is +y
+  double yFov = 0.8, aspect = 4.0 / 3, zNear = 0.1, zFar = 100;
+};
+
+struct GlbScene {
+  std::vector<GlbTexture> textures;
+  std::vector<GlbMaterial> materials;
+  std::vector<GlbMesh> meshes;
+  std::vector<GlbNode> nodes;
+  std::vector<int> roots;  // into nodes; the camera becomes one more root
+  GlbCamera camera;
+};
+
+std::vector<uint8_t> glbFromScene(const GlbScene& scene);
+
+// A PNG of 8-bit RGBA whose data are stored, not compressed: its bytes depend on no library's version.
+std::vector<uint8_t> storedPng(const GlbTexture& texture);
+
+}  // namespace obscura::apps

@@ -1,0 +1,27 @@
+// In: a frame.  Out: its AOVs as images, exact or to be looked at.
+#pragma once
+
+#include "obscura/engine/aov.h"
+#include "obscura/engine/frame.h"
+#include "obscura/engine/image.h"
+
+namespace obscura::apps {
+
+// All functions want the AOV's planes in the frame, and throw std::bad_alloc.
+
+// The planes themselves: F32 or, for ids, U32, every bit kept. What EXR, PFM and NPY hold and digests are of.
+engine::Image planeImage(const engine::Frame& frame, engine::Aov aov);
+
+// The sRGB bytes of the colour, U8 RGB.
+engine::Image displayPicture(const engine::Frame& frame);
+
+// What a PNG holds. In 8 bits: color, albedo and emissive sRGB-encoded; obscurance and transfer linear, times 255 (they
+// are factors, not light), obscurance as grey; normal 255 (n / 2 + 1/2); see engine/plane_image.h for depth and ids;
+// position along each axis from 0 at the least to 255 at the greatest that is seen (needs the depth, too). 16 bits:
+// the same with 65535, but depth, position and ids stay pictures of 8 bits.
+engine::Image picture(const engine::Frame& frame, engine::Aov aov, int bits);
+
+// Depth, normal, albedo, O, W and the colour side by side, U8 RGB.
+engine::Image stagesPicture(const engine::Frame& frame);
+
+}  // namespace obscura::apps

@@ -1,0 +1,45 @@
+// In: a .gltf or .glb file.  Out: a Scene.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "obscura/engine/result.h"
+#include "obscura/engine/scene.h"
+
+namespace obscura::engine {
+
+// Every input is hostile: sizes are checked against these before anything is allocated.
+struct LoadLimits {
+  uint64_t fileBytes = 4ull << 30;          // each file read
+  uint64_t triangles = 1ull << 28;          // unique, over all meshes
+  uint64_t instancedTriangles = 0xFFFFFFFEull;  // ids are 32 bits, one value means "none"
+  uint64_t instances = 1ull << 24;
+  uint64_t geometryBytes = 8ull << 30;      // vertices and indices of all meshes in memory, without clusters
+  uint64_t zeroElements = 1ull << 20;       // of accessors without a bufferView, summed over their uses
+  uint32_t nodeDepth = 1024;
+  uint32_t textureSize = 16384;             // texels a side
+  uint64_t textureBytes = 4ull << 30;       // all decoded levels together
+};
+
+struct LoadOptions {
+  int scene = -1;               // -1: the file's default scene, else its first
+  bool textures = true;         // false: materials keep their factors only (no image is decoded)
+  LoadLimits limits;
+};
+
+// Reads what the chosen scene draws and nothing else: meshes, materials and images that no node of it shows are not
+// decoded. Errors: Usage (options.scene does not exist), else BadInput with the file and the JSON pointer concerned;
+// no exception escapes. What is left out (Scene::warnings says so, once a kind):
+//   - an extension that is not supported and not required; required ones are errors. KHR_lights_punctual is the
+//     exception: pictures are lit by the ambient light, so required or not it is left out;
+//   - points and lines; primitives without POSITION; triangles that a strip or list does not complete;
+//   - skins: the vertices are shown as stored, with the transform of their node (which glTF ignores for a skinned
+//     mesh, expecting the joints to bring it: in the bind pose of common exporters both are the same);
+//   - morph targets: the mesh without them;
+//   - alphaMode BLEND: drawn as MASK with the cutoff 0.5;
+//   - occlusion textures and animations, without a word: obscurance is computed, and a frame shows the rest pose.
+// External files must lie in the folder of the .gltf or below it.
+Result<Scene> sceneFromGltf(const std::string& path, const LoadOptions& options = {});
+
+}  // namespace obscura::engine

@@ -1,0 +1,75 @@
+// The scene: what a file becomes in memory, ready to be drawn from any camera. Everything is owned here.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "obscura/raster/camera.h"
+#include "obscura/raster/clusters.h"
+#include "obscura/raster/material.h"
+#include "obscura/raster/mesh.h"
+
+namespace obscura::engine {
+
+// One glTF primitive, as an indexed triangle list (strips and fans are unrolled). Stored once, however many
+// instances show it. All vectors but positions and indices may be empty; see raster::MeshView for the layout.
+// From a file, texture coordinates and tangents are there only if the material samples a texture with them.
+struct Mesh {
+  std::string name;  // "MESH/primitive K"
+  std::vector<glm::vec3> positions, normals;
+  std::vector<glm::vec4> tangents, colors;
+  std::vector<glm::vec2> uvs[2];
+  std::vector<uint32_t> indices;
+  uint32_t material = 0;      // index into Scene::materials
+  raster::Clusters clusters;  // see engine/cluster_mesh.h
+  raster::MeshView view() const;
+};
+
+struct Instance {
+  uint32_t mesh = 0;
+  uint32_t node = 0;  // index of the glTF node it comes from
+  glm::dmat4 worldFromObject{1.0};
+};
+
+// A decoded image with the sampler it is used with; `view` points into `texels`, which textures of the same image
+// share, so that a copied scene stays valid.
+struct Texture {
+  std::string name;
+  std::shared_ptr<const std::vector<uint32_t>> texels;  // all levels, see raster::TextureView
+  raster::TextureView view;
+};
+
+struct SceneCamera {
+  std::string name;
+  glm::dmat4 worldFromView{1.0};  // rigid: the node's scale is taken out
+  raster::Projection projection = raster::Projection::Perspective;
+  double yFov = 0.8, aspect = 0;  // perspective; radians; aspect 0: the image's
+  double xMag = 1, yMag = 1;      // orthographic: half extents
+  double zNear = 0.1, zFar = 0;   // zFar 0: none
+};
+
+struct Bounds {
+  glm::dvec3 min{0}, max{0};
+  bool empty = true;
+};
+
+struct Scene {
+  std::vector<Mesh> meshes;
+  std::vector<raster::Material> materials;  // at least one; from a file: as numbered there, then the default one
+  std::vector<std::string> materialNames;
+  std::vector<Texture> textures;
+  std::vector<Instance> instances;  // in the order of the node tree, depth first
+  std::vector<std::string> nodeNames;
+  std::vector<SceneCamera> cameras;
+  Bounds bounds;                      // of all instances, world space
+  std::vector<std::string> warnings;  // one line each, every kind once
+};
+
+}  // namespace obscura::engine

@@ -1,0 +1,77 @@
+// Scalar twin of ambient_transfer.cpp, line by line after the long paper's shader (section 5).
+#include <cmath>
+#include <limits>
+
+#include <glm/vec3.hpp>
+
+#include "obscura/post/ambient_transfer.h"
+#include "obscura/post/sample_sets.h"
+
+namespace obscura::post {
+namespace {
+
+struct Texel {
+  int x, y;
+};
+
+// scPos -> ssPos: the nearest texel of the depth map, clamped at the image's border.
+Texel project(const Projector& p, const glm::vec3& point) {
+  const float inverse = p.perspective ? 1 / point.z : 1;
+  const float u = std::floor(point.x * inverse * p.xScale + p.xCenter), v = std::floor(point.y * inverse * p.yScale + p.yCenter);
+  auto clamp = [](float c, int size) { return c > 0 ? (c < float(size) ? int(c) : size - 1) : 0; };
+  return {clamp(u, p.width), clamp(v, p.height)};
+}
+
+void shade(const TransferInput& in, int x, int y, TransferSums& out) {
+  const raster::GBuffer& g = *in.g;
+  const Projector& projector = in.projector;
+  const AmbientSettings& s = in.settings;
+  const float n = float(s.samples);
+  float num = 0;
+  glm::vec3 den(n);
+  const float depth = g.depth.at(x, y);
+  const bool empty = !(depth < std::numeric_limits<float>::infinity());
+  if (empty) num = n;
+
+  glm::vec3 cPos((float(x) + 0.5f - projector.xCenter) * projector.xInverse, (float(y) + 0.5f - projector.yCenter) * projector.yInverse, depth);
+  if (projector.perspective) cPos.x *= depth, cPos.y *= depth;
+
+  // Tangent space: T = normalize(N x (0, 1, 0.01)), B = N x T.
+  const glm::vec3 N(g.normal[0].at(x, y), g.normal[1].at(x, y), -g.normal[2].at(x, y));
+  glm::vec3 T(N.y * 0.01f - N.z, -(N.x * 0.01f), N.x);
+  const float square = T.x * T.x + T.y * T.y + T.z * T.z;
+  T = square > 1e-12f ? T / std::sqrt(square) : glm::vec3(1, 0, 0);
+  const glm::vec3 B(N.y * T.z - N.z * T.y, N.z * T.x - N.x * T.z, N.x * T.y - N.y * T.x);
+
+  // Interleaved sampling: rows (c, s, 0) and (s, -c, 0) of the noise map turn T and B.
+  const glm::vec2 r1 = s.interleave ? rotations()[size_t(x % 4 + 4 * (y % 4))] : glm::vec2(1, 0);
+  const glm::vec3 T1 = T * r1.x + B * r1.y, B1 = T * r1.y - B * r1.x;
+
+  for (const glm::vec3& xyz : in.offsets) {
+    if (empty) break;
+    bool outer = true;
+    Texel occluder{};
+    for (int k = 1; k <= s.steps && outer; ++k) {
+      const glm::vec3 o = xyz * (float(k) / float(s.steps));
+      const glm::vec3 scPos = cPos + (T1 * o.x + B1 * o.y + N * o.z);
+      occluder = project(projector, scPos);
+      const float behind = scPos.z - g.depth.at(occluder.x, occluder.y);
+      outer = !(behind > s.bias && behind < s.radius && scPos.z > projector.zNear);
+    }
+    if (outer) num += 1;
+    else if (s.albedo == TransferAlbedo::Neighbour)
+      for (int c = 0; c < 3; ++c) den[c] -= g.albedo[c].at(occluder.x, occluder.y);
+  }
+  out.numerator.at(x, y) = num;
+  if (s.albedo == TransferAlbedo::Neighbour)
+    for (int c = 0; c < 3; ++c) out.denominator[c].at(x, y) = den[c];
+}
+
+}  // namespace
+
+void ambientTransferRef(const TransferInput& in, int y0, int y1, TransferSums& out) {
+  for (int y = y0; y < y1; ++y)
+    for (int x = 0; x < in.g->width; ++x) shade(in, x, y, out);
+}
+
+}  // namespace obscura::post

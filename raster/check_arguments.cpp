@@ -1,0 +1,78 @@
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "obscura/raster/rasterizer.h"
+#include "obscura/raster/view.h"
+
+namespace obscura::raster {
+namespace {
+
+template <class... Parts>
+[[noreturn]] void fail(const Parts&... parts) {
+  std::string text = "obscura raster: ";
+  auto add = [&](const auto& part) {
+    if constexpr (std::is_arithmetic_v<std::decay_t<decltype(part)>>) text += std::to_string(part);
+    else text += part;
+  };
+  (add(parts), ...);
+  throw std::invalid_argument(text);
+}
+
+void checkSlot(const TextureSlot& slot, size_t textures, size_t material) {
+  if (slot.texture >= 0 && size_t(slot.texture) >= textures)
+    fail("material ", material, " uses texture ", slot.texture, " of ", textures);
+  if (slot.uvSet < 0 || slot.uvSet > 1) fail("material ", material, " uses uv set ", slot.uvSet, ", not 0 or 1");
+}
+
+void checkTexture(const TextureView& t, size_t index) {
+  if (t.width < 1 || t.height < 1 || t.width > 32768 || t.height > 32768)
+    fail("texture ", index, " has ", t.width, " x ", t.height, " texels, not 1 ... 32768");
+  if (t.levels < 1 || t.levels > 16) fail("texture ", index, " has ", t.levels, " levels, not 1 ... 16");
+  size_t texels = 0;
+  for (int k = 0; k < t.levels; ++k) texels += size_t(std::max(1, t.width >> k)) * size_t(std::max(1, t.height >> k));
+  if (t.texels.size() < texels) fail("texture ", index, " holds ", t.texels.size(), " texels of ", texels);
+}
+
+void checkMesh(const MeshView& m, size_t instance) {
+  const size_t n = m.positions.size();
+  if (n > 0x20000000u || m.indices.size() > 0x7FFFFFFFu)
+    fail("instance ", instance, " has ", n, " vertices and ", m.indices.size(), " indices, too many");
+  if (m.indices.size() % 3 != 0) fail("instance ", instance, " has ", m.indices.size(), " indices, not a multiple of 3");
+  for (size_t k : {m.normals.size(), m.tangents.size(), m.uvs[0].size(), m.uvs[1].size(), m.colors.size()})
+    if (k != 0 && k != n) fail("instance ", instance, " has an attribute of ", k, " elements for ", n, " vertices");
+  if (m.clusters && m.clusters->triangleCount != m.triangleCount())
+    fail("instance ", instance, " has clusters of ", m.clusters->triangleCount, " triangles for ", m.triangleCount());
+}
+
+}  // namespace
+
+void checkArguments(const DrawList& list, const Camera& c, int width, int height) {
+  if (width < 1 || height < 1 || width > kMaxImageSize || height > kMaxImageSize)
+    fail("image of ", width, " x ", height, " pixels, not 1 ... ", kMaxImageSize);
+  const bool perspective = c.projection == Projection::Perspective;
+  for (float v : {c.xScale, c.yScale, c.xShift, c.yShift, c.zNear, c.zFar})
+    if (!std::isfinite(v) || std::fabs(v) > 1e30f) fail("camera parameter ", v);
+  if (!(c.xScale > 0) || !(c.yScale > 0)) fail("camera scale ", c.xScale, ", ", c.yScale, ", not positive");
+  if (perspective ? c.zNear < 1e-30f : c.zNear < 0) fail("camera zNear ", c.zNear);
+  if (perspective ? c.zFar != 0 && !(c.zFar > c.zNear) : !(c.zFar > c.zNear)) fail("camera zFar ", c.zFar, " for zNear ", c.zNear);
+
+  for (size_t k = 0; k < list.textures.size(); ++k) checkTexture(list.textures[k], k);
+  for (size_t k = 0; k < list.materials.size(); ++k)
+    for (const TextureSlot* s : {&list.materials[k].baseColorMap, &list.materials[k].metallicRoughnessMap,
+                                 &list.materials[k].normalMap, &list.materials[k].emissiveMap})
+      checkSlot(*s, list.textures.size(), k);
+  uint64_t triangles = 0;
+  const MeshView* last = nullptr;
+  for (size_t k = 0; k < list.instances.size(); ++k) {
+    const Instance& i = list.instances[k];
+    if (!i.mesh) fail("instance ", k, " has no mesh");
+    if (i.material >= list.materials.size()) fail("instance ", k, " has material ", i.material, " of ", list.materials.size());
+    if (i.mesh != last) checkMesh(*i.mesh, k);
+    last = i.mesh;
+    triangles += i.mesh->triangleCount();
+  }
+  if (triangles >= kNoTriangle) fail(triangles, " triangles: ids have 32 bits");
+}
+
+}  // namespace obscura::raster

@@ -1,0 +1,200 @@
+#include "obscura/raster/exact_math.h"
+
+#include <cfloat>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+
+#if defined(__FAST_MATH__)
+#error "exact_math needs IEEE arithmetic: compile without -ffast-math"
+#endif
+
+namespace obscura::raster {
+namespace {
+
+static_assert(FLT_EVAL_METHOD == 0, "double arithmetic must round to double after every operation");
+static_assert(std::numeric_limits<double>::is_iec559);
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// An unevaluated sum, |lo| <= ulp(hi) / 2 unless said otherwise.
+struct Double2 {
+  double hi, lo;
+};
+
+// hi + lo = a + b exactly (Knuth).
+Double2 twoSum(double a, double b) {
+  const double s = a + b, bRounded = s - a;
+  return {s, (a - (s - bRounded)) + (b - bRounded)};
+}
+
+// hi + lo = a b exactly, |a|, |b| < 2^990 (Dekker: both factors split into halves of 26 bits).
+Double2 twoProduct(double a, double b) {
+  const double p = a * b, aScaled = 134217729.0 * a, bScaled = 134217729.0 * b;  // 2^27 + 1
+  const double aHi = aScaled - (aScaled - a), aLo = a - aHi;
+  const double bHi = bScaled - (bScaled - b), bLo = b - bHi;
+  return {p, ((aHi * bHi - p) + aHi * bLo + aLo * bHi) + aLo * bLo};
+}
+
+uint64_t bitsOf(double x) {
+  uint64_t bits;
+  std::memcpy(&bits, &x, sizeof bits);
+  return bits;
+}
+
+double fromBits(uint64_t bits) {
+  double x;
+  std::memcpy(&x, &bits, sizeof x);
+  return x;
+}
+
+double powerOfTwo(int k) { return fromBits(uint64_t(k + 1023) << 52); }  // -1022 <= k <= 1023
+
+int nearestInteger(double x) { return int(x + (x < 0 ? -0.5 : 0.5)); }  // |x| < 2^31
+
+// x = quarterTurns pi/2 + rest, |rest| < pi/4 (1 + 2^-30), |x| <= 2^20. pi/2 is the sum of four parts of which the
+// first three have 33 bits; quarterTurns has 20, so their products are exact and so is the first difference.
+Double2 reduceAngle(double x, int& quarterTurns) {
+  quarterTurns = nearestInteger(x * 0x1.45f306dc9c883p-1);
+  const double k = quarterTurns;
+  const Double2 a = twoSum(x - k * 0x1.921fb544p+0, -(k * 0x1.0b4611a6p-34));
+  const Double2 b = twoSum(a.hi, -(k * 0x1.3198a2e0p-69));
+  return twoSum(b.hi, a.lo + b.lo - k * 0x1.b839a252049c1p-104);
+}
+
+// Taylor series; the first term left out is below 2^-62 of the result for |x| <= pi/4.
+double sinKernel(Double2 x) {
+  const double z = x.hi * x.hi;
+  double p = 1.0 / 355687428096000.0;  // 1/17!
+  p = p * z - 1.0 / 1307674368000.0;
+  p = p * z + 1.0 / 6227020800.0;
+  p = p * z - 1.0 / 39916800.0;
+  p = p * z + 1.0 / 362880.0;
+  p = p * z - 1.0 / 5040.0;
+  p = p * z + 1.0 / 120.0;
+  p = p * z - 1.0 / 6.0;
+  return x.hi + (x.hi * z * p + x.lo * (1.0 - 0.5 * z));  // sin(hi + lo) = sin hi + lo cos hi
+}
+
+double cosKernel(Double2 x) {
+  const double z = x.hi * x.hi;
+  double p = -1.0 / 6402373705728000.0;  // 1/18!
+  p = p * z + 1.0 / 20922789888000.0;
+  p = p * z - 1.0 / 87178291200.0;
+  p = p * z + 1.0 / 479001600.0;
+  p = p * z - 1.0 / 3628800.0;
+  p = p * z + 1.0 / 40320.0;
+  p = p * z - 1.0 / 720.0;
+  p = p * z + 1.0 / 24.0;
+  const double half = 0.5 * z, head = 1.0 - half;  // what this difference rounds away goes into the tail
+  return head + (((1.0 - head) - half) + (z * z * p - x.hi * x.lo));
+}
+
+bool tooLargeForAngle(double x) { return !(x >= -0x1p20 && x <= 0x1p20); }  // NaN too
+bool tinyAngle(double x) { return x > -0x1p-27 && x < 0x1p-27; }            // x^2 / 2 < 2^-54
+
+// e^(hi + lo), any lo << hi.
+double expOf(Double2 x) {
+  if (x.hi > 0x1.62e42fefa39efp+9) return kInfinity;
+  if (x.hi < -0x1.6232bdd7abcd2p+9) return 0;
+  const int k = nearestInteger(x.hi * 0x1.71547652b82fep+0);
+  // ln 2 in two parts; k has 11 bits and the first part 42, so k times it is exact and so is the difference.
+  const Double2 r = twoSum(x.hi - k * 0x1.62e42fefa38p-1, x.lo - k * 0x1.ef35793c76730p-45);
+  double p = 1.0 / 87178291200.0;  // 1/14!: |r| < 0.35, what follows is below 2^-60
+  p = p * r.hi + 1.0 / 6227020800.0;
+  p = p * r.hi + 1.0 / 479001600.0;
+  p = p * r.hi + 1.0 / 39916800.0;
+  p = p * r.hi + 1.0 / 3628800.0;
+  p = p * r.hi + 1.0 / 362880.0;
+  p = p * r.hi + 1.0 / 40320.0;
+  p = p * r.hi + 1.0 / 5040.0;
+  p = p * r.hi + 1.0 / 720.0;
+  p = p * r.hi + 1.0 / 120.0;
+  p = p * r.hi + 1.0 / 24.0;
+  p = p * r.hi + 1.0 / 6.0;
+  p = p * r.hi + 0.5;
+  const Double2 head = twoSum(1.0, r.hi);
+  const double y = head.hi + (head.lo + (r.hi * r.hi * p + r.lo * (1.0 + r.hi)));
+  return k >= 0 ? y * powerOfTwo(k - 1) * 2.0 : y * powerOfTwo(k);  // 2^1024 itself is no double
+}
+
+// log of a positive normal number, absolute error below 2^-60 (|log x| + 1) and relative error below 2^-58.
+Double2 logOf(double x) {
+  const uint64_t bits = bitsOf(x);
+  int e = int(bits >> 52) - 1023;
+  double m = fromBits((bits & 0xFFFFFFFFFFFFFull) | 0x3FF0000000000000ull);
+  if (m > 1.4142135623730951) {
+    m *= 0.5;
+    e += 1;
+  }
+  // log m = 2 atanh s = 2 s + s^3 (2/3 + 2/5 s^2 + ...), s = (m - 1) / (m + 1), |s| < 0.1716; s to twice double.
+  const double f = m - 1.0;
+  const Double2 u = twoSum(1.0, m);
+  const double s = f / u.hi;
+  const Double2 su = twoProduct(s, u.hi);
+  const double sLo = (((f - su.hi) - su.lo) - s * u.lo) / u.hi;
+  const double z = s * s;
+  double p = 2.0 / 23.0;
+  for (int d = 21; d >= 3; d -= 2) p = p * z + 2.0 / d;
+  const Double2 head = twoSum(e * 0x1.62e42fefa38p-1, 2.0 * s);  // e times 42 bits is exact
+  return twoSum(head.hi, head.lo + (s * z * p + (2.0 * sLo + e * 0x1.ef35793c76730p-45)));
+}
+
+bool isZeroOrSubnormal(double x) { return (bitsOf(x) << 1 >> 53) == 0; }
+
+}  // namespace
+
+double exactSin(double x) {
+  if (tooLargeForAngle(x)) return kNaN;
+  if (tinyAngle(x)) return x;
+  int quarterTurns;
+  const Double2 r = reduceAngle(x, quarterTurns);
+  const double y = quarterTurns & 1 ? cosKernel(r) : sinKernel(r);
+  return quarterTurns & 2 ? -y : y;
+}
+
+double exactCos(double x) {
+  if (tooLargeForAngle(x)) return kNaN;
+  if (tinyAngle(x)) return 1;
+  int quarterTurns;
+  const Double2 r = reduceAngle(x, quarterTurns);
+  const double y = quarterTurns & 1 ? sinKernel(r) : cosKernel(r);
+  return (quarterTurns + 1) & 2 ? -y : y;
+}
+
+double exactTan(double x) {
+  if (tooLargeForAngle(x)) return kNaN;
+  if (tinyAngle(x)) return x;
+  int quarterTurns;
+  const Double2 r = reduceAngle(x, quarterTurns);
+  return quarterTurns & 1 ? -cosKernel(r) / sinKernel(r) : sinKernel(r) / cosKernel(r);
+}
+
+double exactExp(double x) {
+  if (x != x) return kNaN;
+  return expOf({x, 0});
+}
+
+double exactLog(double x) {
+  if (x != x) return kNaN;
+  if (isZeroOrSubnormal(x)) return -kInfinity;
+  if (x < 0) return kNaN;
+  if (x == kInfinity) return kInfinity;
+  return logOf(x).hi;
+}
+
+double exactPow(double x, double y) {
+  if (x == 1 || isZeroOrSubnormal(y)) return 1;
+  if (x != x || y != y) return kNaN;
+  if (isZeroOrSubnormal(x)) return y > 0 ? 0 : kInfinity;
+  if (x < 0) return kNaN;
+  if (x == kInfinity) return y > 0 ? kInfinity : 0;
+  const Double2 l = logOf(x);
+  // |log x| >= 2^-53 here: a larger y is out of range in any case, and the product below stays finite.
+  if (y > 0x1p64 || y < -0x1p64) return (y > 0) == (l.hi > 0) ? kInfinity : 0;
+  const Double2 product = twoProduct(y, l.hi);
+  return expOf({product.hi, product.lo + y * l.lo});
+}
+
+}  // namespace obscura::raster

@@ -1,0 +1,28 @@
+#include "obscura/raster/gbuffer.h"
+
+namespace obscura::raster {
+
+GBuffer::GBuffer(int w, int h, const PlaneSet& planes) : width(w), height(h) {
+  auto make = [&](bool wanted, auto& plane) {
+    if (wanted) plane = std::decay_t<decltype(plane)>(w, h);
+  };
+  make(planes.depth, depth);
+  for (int c = 0; c < 3; ++c) {
+    make(planes.normal, normal[c]);
+    make(planes.albedo, albedo[c]);
+    make(planes.emissive, emissive[c]);
+    make(planes.position, position[c]);
+  }
+  make(planes.triangle, triangle);
+  make(planes.instance, instance);
+  make(planes.material, material);
+}
+
+bool GBuffer::has(const PlaneSet& planes) const {
+  return (!planes.depth || !depth.empty()) && (!planes.normal || !normal[0].empty()) &&
+         (!planes.albedo || !albedo[0].empty()) && (!planes.emissive || !emissive[0].empty()) &&
+         (!planes.position || !position[0].empty()) && (!planes.triangle || !triangle.empty()) &&
+         (!planes.instance || !instance.empty()) && (!planes.material || !material.empty());
+}
+
+}  // namespace obscura::raster

@@ -1,0 +1,44 @@
+#include "obscura/raster/parallel.h"
+
+#include <algorithm>
+
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include "obscura/raster/float_environment.h"
+
+namespace obscura::raster {
+
+struct Parallel::Arena {
+  explicit Arena(int threads) : arena(threads) {}
+  tbb::task_arena arena;
+};
+
+Parallel::Parallel(int threads)
+    : workers_(threads > 0 ? threads : tbb::this_task_arena::max_concurrency()) {
+  if (workers_ > 1) arena_ = std::make_unique<Arena>(workers_);
+}
+Parallel::~Parallel() = default;
+Parallel::Parallel(Parallel&&) noexcept = default;
+Parallel& Parallel::operator=(Parallel&&) noexcept = default;
+
+void Parallel::forRanges(size_t count, size_t grain, const std::function<void(size_t, size_t, int)>& body) {
+  if (count == 0) return;
+  grain = std::max<size_t>(grain, 1);
+  const size_t ranges = (count + grain - 1) / grain;
+  auto run = [&](size_t range, int worker) {
+    const FloatEnvironment environment;
+    body(range * grain, std::min(count, (range + 1) * grain), worker);
+  };
+  if (!arena_ || ranges == 1) {
+    for (size_t r = 0; r < ranges; ++r) run(r, 0);
+    return;
+  }
+  arena_->arena.execute([&] {
+    tbb::parallel_for(
+        size_t(0), ranges, [&](size_t r) { run(r, tbb::this_task_arena::current_thread_index()); },
+        tbb::simple_partitioner());
+  });
+}
+
+}  // namespace obscura::raster

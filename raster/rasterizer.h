@@ -1,0 +1,60 @@
+// The rasterizer: draw list and camera in, G-buffer out.
+//
+//   draws -> cull -> transform -> setup (clip) -> bins -> tiles: visibility -> resolve -> G-buffer
+//
+// One header per stage; see view.h for the conventions (handedness, pixel centres, fill rule, depth).
+#pragma once
+
+#include <memory>
+
+#include "obscura/raster/camera.h"
+#include "obscura/raster/draw.h"
+#include "obscura/raster/gbuffer.h"
+#include "obscura/raster/statistics.h"
+#include "obscura/raster/target.h"
+
+namespace obscura::raster {
+
+// None of these changes a bit of the result.
+struct Settings {
+  int threads = 0;               // 0: one per core
+  Target target = Target::Auto;
+  int tile = 64;                 // pixels a side: 16, 32 or 64
+  bool skip = true;              // false: nothing is culled, every tile is rasterized (to prove that it is the same)
+};
+
+struct Timings {
+  double setupMs = 0, tilesMs = 0;  // cull to bins; tiles and resolve
+};
+
+// Holds only scratch memory, which grows to what the largest frame needs and is used again. An instance serves one
+// thread at a time; any number of instances may work at once.
+class Rasterizer {
+ public:
+  explicit Rasterizer(const Settings& settings = {});
+  ~Rasterizer();
+  Rasterizer(Rasterizer&&) noexcept;
+  Rasterizer& operator=(Rasterizer&&) noexcept;
+
+  // width, height: 1 ... kMaxImageSize. `out` is allocated anew unless it has the right size and planes already.
+  // Throws std::invalid_argument, naming the value, where the list contradicts itself (an index that is out of range,
+  // spans of different length, a camera without extent), std::bad_alloc without memory. Bad geometry never throws:
+  // it is dropped and counted.
+  void render(const DrawList& list, const Camera& camera, int width, int height, const PlaneSet& planes, GBuffer& out);
+
+  const Statistics& statistics() const;  // of the last frame
+  const Timings& timings() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+// The same by the scalar twins: every triangle against every pixel of its box, one thread, no tiles, no culling, no
+// SIMD. Short and slow; equal to Rasterizer::render bit for bit.
+void renderReference(const DrawList& list, const Camera& camera, int width, int height, const PlaneSet& planes, GBuffer& out);
+
+// What render() throws about; the reference calls it too.
+void checkArguments(const DrawList& list, const Camera& camera, int width, int height);
+
+}  // namespace obscura::raster

@@ -1,0 +1,143 @@
+// The scalar twins of setup and tiles, and the reference frame made of all twins.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "obscura/raster/clip.h"
+#include "obscura/raster/float_environment.h"
+#include "obscura/raster/rasterizer.h"
+#include "obscura/raster/reference.h"
+#include "obscura/raster/srgb.h"
+#include "obscura/raster/view.h"
+
+namespace obscura::raster {
+namespace ref {
+namespace {
+
+using Point = glm::tvec2<int64_t>;
+
+// Positive where c is to the right of p -> q on the screen (y points down).
+int64_t side(Point p, Point q, Point c) { return (q.x - p.x) * (c.y - p.y) - (q.y - p.y) * (c.x - p.x); }
+
+// The interior lies below a top edge and to the right of a left one.
+bool ownsItsEdge(Point p, Point q) { return q.y < p.y || (q.y == p.y && q.x > p.x); }
+
+bool covers(const Point v[3], Point c) {
+  for (int i = 0; i < 3; ++i) {
+    const int64_t s = side(v[i], v[(i + 1) % 3], c);
+    if (s < 0 || (s == 0 && !ownsItsEdge(v[i], v[(i + 1) % 3]))) return false;
+  }
+  return true;
+}
+
+struct Vertex {
+  Point at;
+  float key;
+};
+
+void drawSnapped(const SurfaceContext& context, const Draw& draw, uint32_t triangle, const Vertex vertex[3], Visibility& out) {
+  const View& view = *context.view;
+  Point v[3] = {vertex[0].at, vertex[1].at, vertex[2].at};
+  const Point e1 = v[1] - v[0], e2 = v[2] - v[0];
+  const int64_t area = e1.x * e2.y - e1.y * e2.x;
+  const bool front = draw.mirrored ? area > 0 : area < 0;
+  if (area == 0 || (!draw.material->doubleSided && !front)) return;
+
+  const double d1 = double(vertex[1].key) - vertex[0].key, d2 = double(vertex[2].key) - vertex[0].key, perArea = 1.0 / double(area);
+  const float gx = float((d1 * double(e2.y) - d2 * double(e1.y)) * perArea), gy = float((d2 * double(e1.x) - d1 * double(e2.x)) * perArea);
+  const float nearest = std::max({vertex[0].key, vertex[1].key, vertex[2].key});
+  const float farthest = std::min({vertex[0].key, vertex[1].key, vertex[2].key});
+  if (area < 0) std::swap(v[1], v[2]);
+
+  const auto columns = std::minmax({v[0].x, v[1].x, v[2].x}), rows = std::minmax({v[0].y, v[1].y, v[2].y});
+  auto pixel = [](int64_t sub, int half, int size) { return int(std::clamp<int64_t>((sub + half) / kSub, 0, size - 1)); };
+  const uint32_t id = draw.firstTriangle + triangle;
+  for (int y = pixel(rows.first, view.yHalfSub, out.height); y <= pixel(rows.second, view.yHalfSub, out.height); ++y)
+    for (int x = pixel(columns.first, view.xHalfSub, out.width); x <= pixel(columns.second, view.xHalfSub, out.width); ++x) {
+      const Point c(view.xCenterSub(x), view.yCenterSub(y));
+      if (!covers(v, c)) continue;
+      float key = vertex[0].key + (gx * float(c.x - vertex[0].at.x) + gy * float(c.y - vertex[0].at.y));
+      if (!(key > farthest)) key = farthest;
+      if (!(key < nearest)) key = nearest;
+      float& bestKey = out.key.at(x, y);
+      uint32_t& bestId = out.triangle.at(x, y);
+      if (key < bestKey || (key == bestKey && id >= bestId)) continue;
+      if (draw.material->alphaMode == AlphaMode::Mask &&
+          !(baseColor(context, seePixel(view, draw, triangle, x, y)).a >= draw.material->alphaCutoff))
+        continue;
+      bestKey = key;
+      bestId = id;
+    }
+}
+
+bool seenFromOutside(const Draw& draw, const glm::vec3 o[3]) {
+  if (draw.material->doubleSided || !draw.invertible) return true;
+  const glm::vec3 a = o[1] - o[0], b = o[2] - o[0], eye(draw.eye[0], draw.eye[1], draw.eye[2]);
+  const glm::vec3 n(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+  const glm::vec3 toEye = draw.eye[3] > 0 ? eye - o[0] : eye;
+  return n.x * toEye.x + n.y * toEye.y + n.z * toEye.z > 0;
+}
+
+void drawTriangle(const SurfaceContext& context, const Draw& draw, uint32_t triangle, Visibility& out) {
+  const View& view = *context.view;
+  glm::vec3 o[3], v[3], polygon[kMaxClipped];
+  bool inside = true;
+  for (int i = 0; i < 3; ++i) {
+    o[i] = draw.mesh->positions[draw.mesh->indices[size_t(triangle) * 3 + size_t(i)]];
+    for (int r = 0; r < 3; ++r) {
+      const float* m = draw.viewFromObject[r];
+      v[i][r] = m[0] * o[i].x + m[1] * o[i].y + m[2] * o[i].z + m[3];
+    }
+    const float w = view.perspective ? 1 / -v[i].z : 1, zView = -v[i].z;
+    const float xs = v[i].x * w * view.xScaleSub + view.xShiftSub, ys = v[i].y * w * view.yScaleSub + view.yShiftSub;
+    inside &= zView >= view.zNear && zView <= view.zFar && std::fabs(xs) <= float(kGuardSub) && std::fabs(ys) <= float(kGuardSub);
+    polygon[i] = v[i];
+  }
+  if (!seenFromOutside(draw, o)) return;
+  const int corners = inside ? 3 : clipTriangle(view, v, polygon);
+  for (int k = 2; k < corners; ++k) {
+    Vertex fan[3];
+    const glm::vec3 points[3] = {polygon[0], polygon[k - 1], polygon[k]};
+    for (int i = 0; i < 3; ++i) {
+      int32_t x, y;
+      snapVertex(view, points[i], x, y, fan[i].key);
+      fan[i].at = Point(x, y);
+    }
+    drawSnapped(context, draw, triangle, fan, out);
+  }
+}
+
+}  // namespace
+
+Visibility visibility(const SurfaceContext& context) {
+  Visibility out;
+  out.width = context.view->width;
+  out.height = context.view->height;
+  out.key = Plane<float>(out.width, out.height);
+  out.triangle = Plane<uint32_t>(out.width, out.height);
+  for (int y = 0; y < out.height; ++y) {
+    std::fill_n(out.key.row(y), out.width, -std::numeric_limits<float>::infinity());
+    std::fill_n(out.triangle.row(y), out.width, kNoTriangle);
+  }
+  for (const Draw& draw : context.draws)
+    for (uint32_t t = 0; t < draw.triangleCount; ++t) drawTriangle(context, draw, t, out);
+  return out;
+}
+
+}  // namespace ref
+
+void renderReference(const DrawList& list, const Camera& camera, int width, int height, const PlaneSet& planes, GBuffer& out) {
+  checkArguments(list, camera, width, height);
+  const FloatEnvironment environment;
+  const SrgbTable srgb;
+  const View view = makeView(camera, width, height);
+  const std::vector<Draw> draws = makeDraws(list, camera);
+  const SurfaceContext context{&view, draws, list.textures, srgb.linear};
+  const ref::Visibility visibility = ref::visibility(context);
+  out = GBuffer(width, height, planes);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) ref::resolvePixel(context, visibility.triangle.at(x, y), visibility.key.at(x, y), x, y, out);
+}
+
+}  // namespace obscura::raster

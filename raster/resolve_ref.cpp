@@ -1,0 +1,129 @@
+// Scalar twin of resolve.cpp.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "obscura/raster/reference.h"
+
+namespace obscura::raster::ref {
+namespace {
+
+float dot(const glm::vec3& a, const glm::vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+glm::vec3 cross(const glm::vec3& a, const glm::vec3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+bool normalize(glm::vec3& v) {
+  const float square = dot(v, v);
+  if (!(square >= 1e-36f && square <= 1e36f)) return false;
+  v /= std::sqrt(square);
+  return true;
+}
+
+template <class Rows>
+glm::vec3 rotate(const Rows& m, const glm::vec3& v) {
+  glm::vec3 r;
+  for (int i = 0; i < 3; ++i) r[i] = m[i][0] * v.x + m[i][1] * v.y + m[i][2] * v.z;
+  return r;
+}
+
+glm::vec3 geometricNormal(const SurfacePoint& p) {
+  const glm::vec3 n = cross(p.object[1] - p.object[0], p.object[2] - p.object[0]);
+  const float size = std::max({std::fabs(n.x), std::fabs(n.y), std::fabs(n.z)});
+  glm::vec3 v = rotate(p.draw->normalToView, size > 0 && std::isfinite(size) ? n / size : n);
+  return normalize(v) ? v : glm::vec3(0, 0, 1);
+}
+
+glm::vec3 bend(const SurfaceContext& context, const SurfacePoint& p, const glm::vec3& n) {
+  const Draw& draw = *p.draw;
+  const Material& m = *draw.material;
+  const glm::vec4 texel = sampleSlot(context, p, m.normalMap);
+  const glm::vec3 t((texel.x * 2 - 1) * m.normalScale, (texel.y * 2 - 1) * m.normalScale, texel.z * 2 - 1);
+  const auto tangents = draw.mesh->tangents;
+  const auto uvs = draw.mesh->uvs[m.normalMap.uvSet];
+  glm::vec3 tangent(0);
+  bool right;
+  if (!tangents.empty()) {
+    const glm::vec4 t4 = interpolate(p, tangents);
+    tangent = glm::vec3(t4);
+    right = !(t4.w < 0);
+  } else if (!uvs.empty()) {
+    const glm::vec2 a = uvs[p.vertex[1]] - uvs[p.vertex[0]], b = uvs[p.vertex[2]] - uvs[p.vertex[0]];
+    tangent = (p.object[1] - p.object[0]) * b.y - (p.object[2] - p.object[0]) * a.y;
+    right = a.x * b.y - b.x * a.y < 0;
+    if (right) tangent = -tangent;
+  } else {
+    return n;
+  }
+  tangent = rotate(draw.viewFromObject, tangent);
+  if (!normalize(tangent)) return n;
+  if (draw.mirrored) right = !right;
+  glm::vec3 bitangent = cross(n, tangent);
+  if (!right) bitangent = -bitangent;
+  glm::vec3 bent = tangent * t.x + bitangent * t.y + n * t.z;
+  return normalize(bent) ? bent : n;
+}
+
+glm::vec3 shadingNormal(const SurfaceContext& context, const SurfacePoint& p) {
+  const Draw& draw = *p.draw;
+  const auto normals = draw.mesh->normals;
+  glm::vec3 n(0);
+  if (!normals.empty()) n = rotate(draw.normalToView, interpolate(p, normals));
+  if (normals.empty() || !normalize(n)) n = geometricNormal(p);
+  if (draw.material->normalMap.texture >= 0) n = bend(context, p, n);
+  const bool fromBehind = p.clockwise != draw.mirrored;
+  return draw.material->doubleSided && fromBehind ? -n : n;
+}
+
+float nonNegative(float v) { return v > 0 ? v : 0; }
+
+void store(Plane<float> planes[3], int x, int y, const glm::vec3& v) {
+  if (planes[0].empty()) return;
+  for (int c = 0; c < 3; ++c) planes[c].at(x, y) = v[c];
+}
+
+void store(Plane<uint32_t>& plane, int x, int y, uint32_t v) {
+  if (!plane.empty()) plane.at(x, y) = v;
+}
+
+}  // namespace
+
+void resolvePixel(const SurfaceContext& context, uint32_t id, float key, int x, int y, GBuffer& out) {
+  const View& view = *context.view;
+  glm::vec3 normal(0), albedo(0), emissive(0), position(0);
+  uint32_t instance = kNoTriangle, material = kNoTriangle;
+  float zView = std::numeric_limits<float>::infinity();
+  if (id != kNoTriangle) {
+    const Draw& draw = drawOf(context, id);
+    const Material& m = *draw.material;
+    instance = draw.instance;
+    material = draw.materialIndex;
+    zView = view.perspective ? 1 / key : 0 - key;
+    position.x = (float(view.xCenterSub(x)) - view.xShiftSub) / view.xScaleSub;
+    position.y = (float(view.yCenterSub(y)) - view.yShiftSub) / view.yScaleSub;
+    if (view.perspective) position *= zView;
+    position.z = 0 - zView;
+
+    const SurfacePoint p = seePixel(view, draw, id - draw.firstTriangle, x, y);
+    normal = shadingNormal(context, p);
+    glm::vec3 base = glm::vec3(baseColor(context, p)), emitted = m.emissive;
+    if (m.emissiveMap.texture >= 0) emitted *= glm::vec3(sampleSlot(context, p, m.emissiveMap));
+    for (int c = 0; c < 3; ++c) {
+      base[c] = std::min(nonNegative(base[c]), 1.0f);
+      emitted[c] = nonNegative(emitted[c]);
+    }
+    (m.unlit ? emissive : albedo) = base;
+    if (!m.unlit) emissive = emitted;
+  }
+  if (!out.depth.empty()) out.depth.at(x, y) = zView;
+  store(out.normal, x, y, normal);
+  store(out.albedo, x, y, albedo);
+  store(out.emissive, x, y, emissive);
+  store(out.position, x, y, position);
+  store(out.triangle, x, y, id);
+  store(out.instance, x, y, instance);
+  store(out.material, x, y, material);
+}
+
+}  // namespace obscura::raster::ref

@@ -1,0 +1,301 @@
+#include "obscura/raster/setup.h"
+
+#include <algorithm>
+#include <cmath>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "obscura/raster/setup.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "obscura/raster/transform-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace obscura::raster {
+namespace HWY_NAMESPACE {
+
+constexpr int kList = int(Clusters::kMaxTriangles) + 16;  // lists are written a vector at a time
+
+// Appends the lanes of `v` where `mask` is true; writes a whole vector.
+HWY_INLINE void append(VI v, MI mask, int32_t* list, int& count) {
+  const DI d;
+  hn::StoreU(hn::Compress(v, mask), d, list + count);
+  count += int(hn::CountTrue(d, mask));
+}
+
+// Numbers (in the cluster) of the triangles that face the eye, in `list`; those too close to call by the cluster's
+// planes are decided exactly.
+int facingTriangles(const Draw& draw, const Cluster& cluster, int32_t* list) {
+  const DF d;
+  const DI di;
+  const int lanes = int(hn::Lanes(d));
+  const int triangles = int(cluster.triangleCount);
+  const Clusters& all = *draw.clusters;
+  int count = 0;
+  if (draw.material->doubleSided || !draw.invertible) {
+    for (int t = 0; t < triangles; ++t) list[t] = t;
+    return triangles;
+  }
+  // n . (eye - center) - n . (v0 - center), against 16 times the rounding error that either side can have.
+  float toEye[3], distance = 0;
+  for (int c = 0; c < 3; ++c) {
+    toEye[c] = draw.eye[3] > 0 ? draw.eye[c] - cluster.center[c] : draw.eye[c];
+    distance += std::fabs(toEye[c]);
+  }
+  const VF w = hn::Set(d, draw.eye[3]);
+  const VF slack = hn::Set(d, (distance + cluster.radius * draw.eye[3]) * (1.0f / (1 << 20)));
+  const VF ex = hn::Set(d, toEye[0]), ey = hn::Set(d, toEye[1]), ez = hn::Set(d, toEye[2]);
+  for (int t = 0; t < triangles; t += lanes) {
+    const size_t at = cluster.firstTriangle + size_t(t);
+    const VF nx = hn::LoadU(d, all.planeX.data() + at), ny = hn::LoadU(d, all.planeY.data() + at);
+    const VF nz = hn::LoadU(d, all.planeZ.data() + at), nw = hn::LoadU(d, all.planeW.data() + at);
+    const VF side = hn::Sub(hn::Add(hn::Add(hn::Mul(nx, ex), hn::Mul(ny, ey)), hn::Mul(nz, ez)), hn::Mul(nw, w));
+    const VF error = hn::Mul(hn::Add(hn::Add(hn::Abs(nx), hn::Abs(ny)), hn::Abs(nz)), slack);
+    const MI inside = hn::Lt(hn::Iota(di, t), hn::Set(di, triangles));
+    const MI front = hn::And(hn::RebindMask(di, hn::Gt(side, error)), inside);
+    const MI back = hn::RebindMask(di, hn::Lt(side, hn::Neg(error)));
+    append(hn::Iota(di, t), front, list, count);
+    const MI unsure = hn::AndNot(hn::Or(front, back), inside);
+    if (HWY_UNLIKELY(!hn::AllFalse(di, unsure))) {
+      HWY_ALIGN int32_t which[16 + 16];
+      int n = 0;
+      append(hn::Iota(di, t), unsure, which, n);
+      for (int i = 0; i < n; ++i)
+        if (facesEye(draw, all.triangle[cluster.firstTriangle + size_t(which[i])])) list[count++] = which[i];
+    }
+  }
+  return count;
+}
+
+// Three corners of a vector of triangles, gathered.
+struct Corners {
+  VI i[3], x[3], y[3];
+};
+
+HWY_INLINE Corners gatherCorners(const TransformedVertices& v, VI packed) {
+  const DI d;
+  Corners c;
+  c.i[0] = hn::And(packed, hn::Set(d, 255));
+  c.i[1] = hn::And(hn::ShiftRight<8>(packed), hn::Set(d, 255));
+  c.i[2] = hn::ShiftRight<16>(packed);
+  for (int k = 0; k < 3; ++k) {
+    c.x[k] = hn::GatherIndex(d, v.xSub, c.i[k]);
+    c.y[k] = hn::GatherIndex(d, v.ySub, c.i[k]);
+  }
+  return c;
+}
+
+// The pixels whose centres lie in the bounding box, within the image, and its extents.
+struct Box {
+  VI x0, y0, x1, y1;
+  VI xExtent, yExtent;
+};
+
+HWY_INLINE Box boundingBox(const View& view, const Corners& c) {
+  const DI d;
+  auto min3 = [](const VI v[3]) HWY_ATTR { return hn::Min(hn::Min(v[0], v[1]), v[2]); };
+  auto max3 = [](const VI v[3]) HWY_ATTR { return hn::Max(hn::Max(v[0], v[1]), v[2]); };
+  const VI minX = min3(c.x), maxX = max3(c.x), minY = min3(c.y), maxY = max3(c.y);
+  auto first = [&](VI v, int32_t half) HWY_ATTR {
+    return hn::Max(hn::ShiftRight<kSubBits>(hn::Add(v, hn::Set(d, half + kSub / 2 - 1))), hn::Zero(d));
+  };
+  auto last = [&](VI v, int32_t half, int size) HWY_ATTR {
+    return hn::Min(hn::ShiftRight<kSubBits>(hn::Add(v, hn::Set(d, half - kSub / 2))), hn::Set(d, size - 1));
+  };
+  return {first(minX, view.xHalfSub),           first(minY, view.yHalfSub), last(maxX, view.xHalfSub, view.width),
+          last(maxY, view.yHalfSub, view.height), hn::Sub(maxX, minX),        hn::Sub(maxY, minY)};
+}
+
+// Edge functions at the centre of the box's first pixel, see triangle.h. Only for small triangles.
+struct Edges {
+  VI e[3], a[3], b[3];
+};
+
+HWY_INLINE Edges edgeFunctions(const View& view, const Corners& c, const Box& box, VI area) {
+  const DI d;
+  const MI clockwise = hn::Gt(area, hn::Zero(d));
+  const VI px[3] = {c.x[0], hn::IfThenElse(clockwise, c.x[1], c.x[2]), hn::IfThenElse(clockwise, c.x[2], c.x[1])};
+  const VI py[3] = {c.y[0], hn::IfThenElse(clockwise, c.y[1], c.y[2]), hn::IfThenElse(clockwise, c.y[2], c.y[1])};
+  const VI cx = hn::Add(hn::ShiftLeft<kSubBits>(box.x0), hn::Set(d, kSub / 2 - view.xHalfSub));
+  const VI cy = hn::Add(hn::ShiftLeft<kSubBits>(box.y0), hn::Set(d, kSub / 2 - view.yHalfSub));
+  Edges out;
+  for (int p = 0; p < 3; ++p) {
+    const int q = p == 2 ? 0 : p + 1;
+    const VI a = hn::Sub(py[p], py[q]), b = hn::Sub(px[q], px[p]);
+    const VI value = hn::Add(hn::Mul(a, hn::Sub(cx, px[p])), hn::Mul(b, hn::Sub(cy, py[p])));
+    const MI topLeft = hn::Or(hn::Gt(a, hn::Zero(d)), hn::And(hn::Eq(a, hn::Zero(d)), hn::Gt(b, hn::Zero(d))));
+    const VI biased = hn::Sub(value, hn::IfThenZeroElse(topLeft, hn::Set(d, 1)));
+    out.e[p] = hn::ShiftRight<kSubBits>(biased);
+    out.a[p] = a;
+    out.b[p] = b;
+  }
+  return out;
+}
+
+HWY_INLINE VI doubledArea(const Corners& c) {
+  return hn::Sub(hn::Mul(hn::Sub(c.x[1], c.x[0]), hn::Sub(c.y[2], c.y[0])),
+                 hn::Mul(hn::Sub(c.x[2], c.x[0]), hn::Sub(c.y[1], c.y[0])));
+}
+
+// What is needed of up to a vector of surviving triangles to write their records.
+struct Survivors {
+  HWY_ALIGN int32_t e[3][16], a[2][16], b[2][16], x[16], y[16], w[16], h[16], xFromP0[16], yFromP0[16];
+  HWY_ALIGN int32_t dx1[16], dy1[16], dx2[16], dy2[16], area[16], triangle[16];
+  HWY_ALIGN float key0[16], key1[16], key2[16], keyMin[16], keyMax[16], xGradient[16], yGradient[16];
+};
+
+// Depth gradients, in double: the products of a 24-bit key and a 15-bit extent are exact there.
+HWY_INLINE void depthGradients(Survivors& s, int count) {
+  const hn::CappedTag<double, 8> d;
+  const hn::Rebind<float, decltype(d)> df;
+  const hn::Rebind<int32_t, decltype(d)> di;
+  for (int i = 0; i < count; i += int(hn::Lanes(d))) {
+    auto real = [&](const float* p) HWY_ATTR { return hn::PromoteTo(d, hn::LoadU(df, p + i)); };
+    auto integer = [&](const int32_t* p) HWY_ATTR { return hn::PromoteTo(d, hn::LoadU(di, p + i)); };
+    const auto key0 = real(s.key0);
+    const auto d1 = hn::Sub(real(s.key1), key0), d2 = hn::Sub(real(s.key2), key0);
+    const auto perArea = hn::Div(hn::Set(d, 1.0), integer(s.area));
+    const auto gx = hn::Sub(hn::Mul(d1, integer(s.dy2)), hn::Mul(d2, integer(s.dy1)));
+    const auto gy = hn::Sub(hn::Mul(d2, integer(s.dx1)), hn::Mul(d1, integer(s.dx2)));
+    hn::StoreU(hn::DemoteTo(df, hn::Mul(gx, perArea)), df, s.xGradient + i);
+    hn::StoreU(hn::DemoteTo(df, hn::Mul(gy, perArea)), df, s.yGradient + i);
+  }
+}
+
+void SetupCluster(const View& view, const Draw& draw, const Cluster& cluster, const TransformedVertices& vertices,
+                  Bins& bins, Statistics& statistics) {
+  const DF d;
+  const DI di;
+  const int lanes = int(hn::Lanes(d));
+  const Clusters& all = *draw.clusters;
+  const uint32_t* corners = all.corners.data() + cluster.firstTriangle;
+  const uint32_t* triangles = all.triangle.data() + cluster.firstTriangle;
+  const auto packedCorners = [&](VI index) HWY_ATTR {
+    return hn::GatherIndex(di, reinterpret_cast<const int32_t*>(corners), index);
+  };
+
+  HWY_ALIGN int32_t facing[kList], visible[kList];
+  int facingCount = facingTriangles(draw, cluster, facing), visibleCount = 0;
+  statistics.facingAway += cluster.triangleCount - uint64_t(facingCount);
+  for (int i = facingCount; i < facingCount + lanes && i < kList; ++i) facing[i] = 0;  // the last vector's rest
+
+  // First pass: keep what covers a pixel centre, as far as boxes and single pixels tell.
+  for (int i = 0; i < facingCount; i += lanes) {
+    const VI index = hn::Load(di, facing + i);
+    const MI valid = hn::Lt(hn::Iota(di, i), hn::Set(di, facingCount));
+    const Corners c = gatherCorners(vertices, packedCorners(index));
+    const Box box = boundingBox(view, c);
+    MI single = hn::Or(hn::Gt(box.xExtent, hn::Set(di, kSmallExtentSub)), hn::Gt(box.yExtent, hn::Set(di, kSmallExtentSub)));
+    MI gone = hn::Or(hn::Gt(box.x0, box.x1), hn::Gt(box.y0, box.y1));
+    if (HWY_UNLIKELY(vertices.anyCode & kNeedsClip)) {
+      const VI c0 = hn::GatherIndex(di, vertices.code, c.i[0]), c1 = hn::GatherIndex(di, vertices.code, c.i[1]);
+      const VI c2 = hn::GatherIndex(di, vertices.code, c.i[2]);
+      const MI clip = hn::Ne(hn::And(hn::Or(hn::Or(c0, c1), c2), hn::Set(di, kNeedsClip)), hn::Zero(di));
+      single = hn::Or(single, clip);
+      gone = hn::AndNot(clip, gone);
+    }
+    const MI toSingle = hn::And(hn::AndNot(gone, single), valid);
+    if (HWY_UNLIKELY(!hn::AllFalse(di, toSingle))) {
+      HWY_ALIGN int32_t which[16 + 16];
+      int n = 0;
+      append(index, toSingle, which, n);
+      for (int k = 0; k < n; ++k) setupSingle(view, draw, triangles[which[k]], bins, statistics);
+    }
+    const VI area = doubledArea(c);
+    const MI wrong = draw.material->doubleSided ? hn::Eq(area, hn::Zero(di))
+                     : draw.mirrored            ? hn::Not(hn::Gt(area, hn::Zero(di)))
+                                                : hn::Not(hn::Lt(area, hn::Zero(di)));
+    const MI candidates = hn::AndNot(hn::Or(gone, single), valid);
+    const MI turned = hn::And(candidates, wrong);
+    MI keep = hn::AndNot(wrong, candidates);
+    // A box of one pixel: is its centre inside?
+    const Edges edges = edgeFunctions(view, c, box, area);
+    const MI onePixel = hn::And(hn::Eq(box.x0, box.x1), hn::Eq(box.y0, box.y1));
+    const MI missed = hn::Lt(hn::Or(hn::Or(edges.e[0], edges.e[1]), edges.e[2]), hn::Zero(di));
+    keep = hn::AndNot(hn::And(onePixel, missed), keep);
+    const int before = visibleCount;
+    append(index, keep, visible, visibleCount);
+    const uint64_t validCount = hn::CountTrue(di, valid), turnedCount = hn::CountTrue(di, turned);
+    statistics.facingAway += turnedCount;
+    statistics.outside += validCount - turnedCount - hn::CountTrue(di, toSingle) - uint64_t(visibleCount - before);
+  }
+  for (int i = visibleCount; i < visibleCount + lanes && i < kList; ++i) visible[i] = 0;
+
+  // Second pass: records of the rest.
+  const bool masked = draw.material->alphaMode == AlphaMode::Mask;
+  Survivors s;
+  for (int i = 0; i < visibleCount; i += lanes) {
+    const int count = std::min(lanes, visibleCount - i);
+    const VI index = hn::Load(di, visible + i);
+    const Corners c = gatherCorners(vertices, packedCorners(index));
+    const Box box = boundingBox(view, c);
+    const VI area = doubledArea(c);
+    const Edges edges = edgeFunctions(view, c, box, area);
+    const VF key0 = hn::GatherIndex(d, vertices.key, c.i[0]), key1 = hn::GatherIndex(d, vertices.key, c.i[1]);
+    const VF key2 = hn::GatherIndex(d, vertices.key, c.i[2]);
+    for (int k = 0; k < 3; ++k) hn::Store(edges.e[k], di, s.e[k]);
+    for (int k = 0; k < 2; ++k) {
+      hn::Store(edges.a[k], di, s.a[k]);
+      hn::Store(edges.b[k], di, s.b[k]);
+    }
+    hn::Store(box.x0, di, s.x);
+    hn::Store(box.y0, di, s.y);
+    hn::Store(hn::Sub(box.x1, box.x0), di, s.w);
+    hn::Store(hn::Sub(box.y1, box.y0), di, s.h);
+    const VI cx = hn::Add(hn::ShiftLeft<kSubBits>(box.x0), hn::Set(di, kSub / 2 - view.xHalfSub));
+    const VI cy = hn::Add(hn::ShiftLeft<kSubBits>(box.y0), hn::Set(di, kSub / 2 - view.yHalfSub));
+    hn::Store(hn::Sub(cx, c.x[0]), di, s.xFromP0);
+    hn::Store(hn::Sub(cy, c.y[0]), di, s.yFromP0);
+    hn::Store(hn::Sub(c.x[1], c.x[0]), di, s.dx1);
+    hn::Store(hn::Sub(c.y[1], c.y[0]), di, s.dy1);
+    hn::Store(hn::Sub(c.x[2], c.x[0]), di, s.dx2);
+    hn::Store(hn::Sub(c.y[2], c.y[0]), di, s.dy2);
+    hn::Store(area, di, s.area);
+    hn::Store(key0, d, s.key0);
+    hn::Store(key1, d, s.key1);
+    hn::Store(key2, d, s.key2);
+    hn::Store(hn::Min(hn::Min(key0, key1), key2), d, s.keyMin);
+    hn::Store(hn::Max(hn::Max(key0, key1), key2), d, s.keyMax);
+    hn::Store(hn::GatherIndex(di, reinterpret_cast<const int32_t*>(triangles), index), di, s.triangle);
+    depthGradients(s, count);
+    for (int k = 0; k < count; ++k) {
+      SmallTriangle t;
+      for (int n = 0; n < 3; ++n) t.e[n] = s.e[n][k];
+      for (int n = 0; n < 2; ++n) t.a[n] = int16_t(s.a[n][k]), t.b[n] = int16_t(s.b[n][k]);
+      t.x = int16_t(s.x[k]);
+      t.y = int16_t(s.y[k]);
+      t.width = uint8_t(s.w[k] + 1);
+      t.height = uint8_t(s.h[k] + 1);
+      t.masked = masked;
+      t.key0 = s.key0[k];
+      t.xGradient = s.xGradient[k];
+      t.yGradient = s.yGradient[k];
+      t.xFromP0 = float(s.xFromP0[k]);
+      t.yFromP0 = float(s.yFromP0[k]);
+      t.keyMin = s.keyMin[k];
+      t.keyMax = s.keyMax[k];
+      t.id = draw.firstTriangle + uint32_t(s.triangle[k]);
+      bins.add(t);
+    }
+  }
+  statistics.drawn += uint64_t(visibleCount);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace obscura::raster
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include "obscura/raster/dispatch.h"
+
+namespace obscura::raster {
+
+HWY_EXPORT(SetupCluster);
+
+void setupCluster(const View& view, const Draw& draw, const Cluster& cluster, const TransformedVertices& vertices,
+                  Bins& bins, Statistics& statistics, Target target) {
+  OBSCURA_DISPATCH(SetupCluster, target)(view, draw, cluster, vertices, bins, statistics);
+}
+
+}  // namespace obscura::raster
+#endif

@@ -1,0 +1,179 @@
+// Per-target: from triangle and pixel to barycentric weights, interpolated attributes and texture coordinates.
+#if defined(OBSCURA_SURFACE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef OBSCURA_SURFACE_INL_H_
+#undef OBSCURA_SURFACE_INL_H_
+#else
+#define OBSCURA_SURFACE_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include "obscura/raster/surface.h"
+#include "obscura/raster/texture-inl.h"
+#include "obscura/raster/transform-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace obscura::raster {
+namespace HWY_NAMESPACE {
+
+HWY_INLINE V3 gather3(Span<const glm::vec3> values, VI index) {
+  const DF d;
+  const DI di;
+  const float* base = &values.data()->x;
+  const VI at = hn::Add(hn::Add(index, index), index);
+  return {hn::GatherIndex(d, base, at), hn::GatherIndex(d, base, hn::Add(at, hn::Set(di, 1))),
+          hn::GatherIndex(d, base, hn::Add(at, hn::Set(di, 2)))};
+}
+
+HWY_INLINE V3 sub(const V3& a, const V3& b) { return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)}; }
+HWY_INLINE VF dot(const V3& a, const V3& b) {
+  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+HWY_INLINE V3 cross(const V3& a, const V3& b) {
+  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
+          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
+}
+HWY_INLINE V3 scale(const V3& a, VF s) { return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)}; }
+HWY_INLINE V3 select(MF mask, const V3& yes, const V3& no) {
+  return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
+}
+
+// One triangle per lane, all of the same draw, seen from one pixel per lane.
+struct Seen {
+  VI index[3];   // vertices
+  V3 object[3];  // their positions, object space
+  VF weight[3];  // barycentric, clamped: all >= 0, sum 1 but for rounding
+  MF clockwise;  // as seen in the image
+  VF w[3], hx[3], hy[3], sum;  // for the gradients
+};
+
+HWY_INLINE Seen seePixel(const View& view, const Draw& draw, VI triangle, VF xCenter, VF yCenter) {
+  const DF d;
+  const DI di;
+  Seen s;
+  const VI at = hn::Add(hn::Add(triangle, triangle), triangle);
+  const int32_t* indices = reinterpret_cast<const int32_t*>(draw.mesh->indices.data());
+  const VF xc = hn::Sub(xCenter, hn::Set(d, view.xShiftSub)), yc = hn::Sub(yCenter, hn::Set(d, view.yShiftSub));
+  for (int i = 0; i < 3; ++i) {
+    s.index[i] = hn::GatherIndex(di, indices, hn::Add(at, hn::Set(di, i)));
+    s.object[i] = gather3(draw.mesh->positions, s.index[i]);
+    const V3 p = viewPosition(draw, s.object[i].x, s.object[i].y, s.object[i].z);
+    s.w[i] = view.perspective ? hn::Neg(p.z) : hn::Set(d, 1.0f);
+    s.hx[i] = hn::Sub(hn::Mul(p.x, hn::Set(d, view.xScaleSub)), hn::Mul(s.w[i], xc));
+    s.hy[i] = hn::Sub(hn::Mul(p.y, hn::Set(d, view.yScaleSub)), hn::Mul(s.w[i], yc));
+  }
+  auto weight = [&](int j, int k) HWY_ATTR { return hn::Sub(hn::Mul(s.hx[j], s.hy[k]), hn::Mul(s.hy[j], s.hx[k])); };
+  const VF b0 = weight(1, 2), b1 = weight(2, 0), b2 = weight(0, 1);
+  s.sum = hn::Add(hn::Add(b0, b1), b2);
+  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+  s.clockwise = hn::Gt(s.sum, zero);
+  const MF usable = hn::Gt(hn::Abs(s.sum), zero);
+  // NaN fails every comparison and ends as 0.
+  auto clamped = [&](VF b, VF most) HWY_ATTR {
+    const VF l = hn::IfThenElseZero(usable, hn::Div(b, s.sum));
+    const VF positive = hn::IfThenElseZero(hn::Gt(l, zero), l);
+    return hn::IfThenElse(hn::Lt(positive, most), positive, most);
+  };
+  s.weight[1] = clamped(b1, one);
+  const VF rest = hn::Sub(one, s.weight[1]);
+  s.weight[2] = clamped(b2, rest);
+  s.weight[0] = hn::Sub(rest, s.weight[2]);
+  return s;
+}
+
+HWY_INLINE VF interpolate(const Seen& s, VF a0, VF a1, VF a2) {
+  return hn::Add(hn::Add(hn::Mul(a0, s.weight[0]), hn::Mul(a1, s.weight[1])), hn::Mul(a2, s.weight[2]));
+}
+
+HWY_INLINE V3 interpolate3(const Seen& s, Span<const glm::vec3> values) {
+  const V3 a = gather3(values, s.index[0]), b = gather3(values, s.index[1]), c = gather3(values, s.index[2]);
+  return {interpolate(s, a.x, b.x, c.x), interpolate(s, a.y, b.y, c.y), interpolate(s, a.z, b.z, c.z)};
+}
+
+// Component `c` of a span of glm::vec2 or vec4 at the three vertices.
+template <class T>
+HWY_INLINE void gatherComponent(Span<const T> values, const Seen& s, int c, VF out[3]) {
+  const DF d;
+  const DI di;
+  constexpr int kComponents = int(sizeof(T) / sizeof(float));
+  for (int i = 0; i < 3; ++i)
+    out[i] = hn::GatherIndex(d, &values.data()->x + c, hn::Mul(s.index[i], hn::Set(di, kComponents)));
+}
+
+template <class T>
+HWY_INLINE VF interpolateComponent(Span<const T> values, const Seen& s, int c) {
+  VF v[3];
+  gatherComponent(values, s, c, v);
+  return interpolate(s, v[0], v[1], v[2]);
+}
+
+// Texture coordinates of a slot, and the larger squared length of their gradients in texels of level 0.
+struct TextureCoordinates {
+  VF u, v, squaredLength;
+};
+
+HWY_INLINE TextureCoordinates textureCoordinates(const Draw& draw, const Seen& s, const TextureSlot& slot, const TextureView& texture) {
+  const DF d;
+  const Span<const glm::vec2> uvs = draw.mesh->uvs[slot.uvSet];
+  TextureCoordinates out;
+  if (uvs.empty()) return {hn::Set(d, slot.uvFromUv[2]), hn::Set(d, slot.uvFromUv[5]), hn::Zero(d)};
+  VF u[3], v[3];
+  gatherComponent(uvs, s, 0, u);
+  gatherComponent(uvs, s, 1, v);
+  const float* m = slot.uvFromUv.data();
+  for (int i = 0; i < 3; ++i) {
+    const VF ui = u[i], vi = v[i];
+    u[i] = hn::Add(hn::Add(hn::Mul(hn::Set(d, m[0]), ui), hn::Mul(hn::Set(d, m[1]), vi)), hn::Set(d, m[2]));
+    v[i] = hn::Add(hn::Add(hn::Mul(hn::Set(d, m[3]), ui), hn::Mul(hn::Set(d, m[4]), vi)), hn::Set(d, m[5]));
+  }
+  out.u = interpolate(s, u[0], u[1], u[2]);
+  out.v = interpolate(s, v[0], v[1], v[2]);
+  out.squaredLength = hn::Zero(d);
+  if (!needsLod(texture)) return out;
+  // b_i is linear in the centre C, hence so is sum: d(b_i / sum) = (d b_i - (b_i / sum) d sum) / sum, per sub-pixel.
+  const VF scaleU = hn::Set(d, float(texture.width) * float(kSub)), scaleV = hn::Set(d, float(texture.height) * float(kSub));
+  for (int axis = 0; axis < 2; ++axis) {
+    VF db[3];
+    for (int i = 0; i < 3; ++i) {
+      const int j = i == 2 ? 0 : i + 1, k = i == 0 ? 2 : i - 1;
+      db[i] = axis == 0 ? hn::Sub(hn::Mul(s.w[k], s.hy[j]), hn::Mul(s.w[j], s.hy[k]))
+                        : hn::Sub(hn::Mul(s.w[j], s.hx[k]), hn::Mul(s.w[k], s.hx[j]));
+    }
+    const VF dSum = hn::Add(hn::Add(db[0], db[1]), db[2]);
+    auto gradient = [&](const VF a[3], VF value, VF texels) HWY_ATTR {
+      const VF da = hn::Add(hn::Add(hn::Mul(db[0], a[0]), hn::Mul(db[1], a[1])), hn::Mul(db[2], a[2]));
+      return hn::Mul(hn::Div(hn::Sub(da, hn::Mul(value, dSum)), s.sum), texels);
+    };
+    const VF du = gradient(u, out.u, scaleU), dv = gradient(v, out.v, scaleV);
+    const VF squared = hn::Add(hn::Mul(du, du), hn::Mul(dv, dv));
+    out.squaredLength = hn::IfThenElse(hn::Gt(squared, out.squaredLength), squared, out.squaredLength);
+  }
+  return out;
+}
+
+HWY_INLINE Rgba sampleSlot(const SurfaceContext& context, const Draw& draw, const Seen& s, const TextureSlot& slot) {
+  const TextureView& texture = context.textures[size_t(slot.texture)];
+  const TextureCoordinates at = textureCoordinates(draw, s, slot, texture);
+  return sampleTexture(texture, context.srgbToLinear, at.u, at.v, levelOfDetail(at.squaredLength));
+}
+
+// Base colour factor x texture x vertex colour, not clamped.
+HWY_INLINE Rgba baseColor(const SurfaceContext& context, const Draw& draw, const Seen& s) {
+  const DF d;
+  const Material& m = *draw.material;
+  Rgba c{hn::Set(d, m.baseColor.r), hn::Set(d, m.baseColor.g), hn::Set(d, m.baseColor.b), hn::Set(d, m.baseColor.a)};
+  auto times = [&](const Rgba& k) HWY_ATTR {
+    c = {hn::Mul(c.r, k.r), hn::Mul(c.g, k.g), hn::Mul(c.b, k.b), hn::Mul(c.a, k.a)};
+  };
+  if (m.baseColorMap.texture >= 0) times(sampleSlot(context, draw, s, m.baseColorMap));
+  const Span<const glm::vec4> colors = draw.mesh->colors;
+  if (!colors.empty())
+    times({interpolateComponent(colors, s, 0), interpolateComponent(colors, s, 1), interpolateComponent(colors, s, 2),
+           interpolateComponent(colors, s, 3)});
+  return c;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace obscura::raster
+HWY_AFTER_NAMESPACE();
+#endif

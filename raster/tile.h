@@ -1,0 +1,33 @@
+// In:  the bins of one tile.
+// Out: depth key and triangle id per pixel of the tile (the visibility buffer).
+#pragma once
+
+#include "obscura/raster/bins.h"
+#include "obscura/raster/plane.h"
+#include "obscura/raster/surface.h"
+#include "obscura/raster/target.h"
+
+namespace obscura::raster {
+
+constexpr int kMinTileBits = 4, kMaxTileBits = 6;  // 16, 32 or 64 pixels
+// Edge functions in a tile fit in 32 bits: |A|, |B| <= 2 kGuardSub, and the first value is clamped to +-kEdgeLimit. That
+// keeps its sign in all of the tile, and the steps, 15 lanes beyond the last column included, stay below 2^31.
+constexpr int64_t kEdgeLimit = int64_t(1) << 30;
+static_assert(2ll * ((1 << kMaxTileBits) - 1) * 2 * kGuardSub <= kEdgeLimit);
+static_assert(kEdgeLimit + (2ll * ((1 << kMaxTileBits) - 1) + 15) * 2 * kGuardSub < (int64_t(1) << 31));
+
+// The pixels of one tile. Rows have 16 elements of padding, so that a vector may start anywhere in a row.
+struct TileBuffers {
+  static constexpr int kStride = (1 << kMaxTileBits) + 16;
+  alignas(64) float key[kStride << kMaxTileBits];
+  alignas(64) uint32_t id[kStride << kMaxTileBits];  // kNoTriangle where nothing was drawn
+  int x = 0, y = 0, width = 0, height = 0;           // of the tile, inside the image
+};
+
+// The winner of a pixel is the triangle with the larger key, on equal keys the one with the smaller id, so the order
+// in which triangles and bins come does not matter. Returns false, and leaves `out` unspecified but for its box, if
+// the tile has no triangles.
+bool rasterTile(const SurfaceContext& context, const TileGrid& grid, int tile, Span<const Bins> bins, TileBuffers& out,
+                Target target);
+
+}  // namespace obscura::raster

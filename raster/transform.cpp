@@ -1,0 +1,81 @@
+#include "obscura/raster/transform.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "obscura/raster/transform.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "obscura/raster/transform-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace obscura::raster {
+namespace HWY_NAMESPACE {
+
+void TransformVertices(const View& view, const Draw& draw, const float* x, const float* y, const float* z, int count,
+                       TransformedVertices& out) {
+  const DF d;
+  const DI di;
+  const int lanes = int(hn::Lanes(d));
+  const VF zNear = hn::Set(d, view.zNear), zFar = hn::Set(d, view.zFar), guard = hn::Set(d, float(kGuardSub));
+  const VF xScale = hn::Set(d, view.xScaleSub), yScale = hn::Set(d, view.yScaleSub);
+  const VF xShift = hn::Set(d, view.xShiftSub), yShift = hn::Set(d, view.yShiftSub);
+  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+  auto bit = [&](MF mask, Outcode code) HWY_ATTR {
+    return hn::IfThenElseZero(hn::RebindMask(di, mask), hn::Set(di, int32_t(code)));
+  };
+
+  int32_t anyCode = 0, allCodes = -1;
+  for (int i = 0; i < count; i += lanes) {
+    const V3 p = viewPosition(draw, hn::LoadU(d, x + i), hn::LoadU(d, y + i), hn::LoadU(d, z + i));
+    const VF zView = hn::Neg(p.z);
+    const MF inFront = hn::Ge(zView, zNear);
+    const VF inverse = view.perspective ? hn::Div(one, zView) : one;
+    const VF xs = hn::Add(hn::Mul(hn::Mul(p.x, inverse), xScale), xShift);
+    const VF ys = hn::Add(hn::Mul(hn::Mul(p.y, inverse), yScale), yShift);
+    const MF inGuard = hn::And(hn::Le(hn::Abs(xs), guard), hn::Le(hn::Abs(ys), guard));
+    const MF usable = hn::And(inFront, inGuard);
+    const VI xSub = hn::NearestInt(hn::IfThenElse(usable, xs, zero));
+    const VI ySub = hn::NearestInt(hn::IfThenElse(usable, ys, zero));
+
+    VI code = bit(hn::Not(inFront), kBeforeNear);
+    code = hn::Or(code, bit(hn::Gt(zView, zFar), kBeyondFar));
+    code = hn::Or(code, bit(hn::Not(inGuard), kOutsideGuard));
+    auto side = [&](MI outside, Outcode c) HWY_ATTR {
+      code = hn::Or(code, hn::IfThenElseZero(hn::And(outside, hn::RebindMask(di, usable)), hn::Set(di, int32_t(c))));
+    };
+    side(hn::Lt(xSub, hn::Set(di, -view.xHalfSub)), kLeft);
+    side(hn::Gt(xSub, hn::Set(di, view.xHalfSub)), kRight);
+    side(hn::Lt(ySub, hn::Set(di, -view.yHalfSub)), kAbove);
+    side(hn::Gt(ySub, hn::Set(di, view.yHalfSub)), kBelow);
+
+    hn::Store(xSub, di, out.xSub + i);
+    hn::Store(ySub, di, out.ySub + i);
+    hn::Store(view.perspective ? inverse : p.z, d, out.key + i);
+    hn::Store(code, di, out.code + i);
+  }
+  for (int i = 0; i < count; ++i) {
+    anyCode |= out.code[i];
+    allCodes &= out.code[i];
+  }
+  out.anyCode = anyCode;
+  out.allCodes = allCodes;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace obscura::raster
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include "obscura/raster/dispatch.h"
+
+namespace obscura::raster {
+
+HWY_EXPORT(TransformVertices);
+
+void transformVertices(const View& view, const Draw& draw, const float* x, const float* y, const float* z, int count,
+                       TransformedVertices& out, Target target) {
+  OBSCURA_DISPATCH(TransformVertices, target)(view, draw, x, y, z, count, out);
+}
+
+}  // namespace obscura::raster
+#endif

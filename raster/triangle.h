@@ -1,0 +1,64 @@
+// A triangle ready for the tiles: exact integer edge functions, depth as a plane, what it covers at most.
+//
+// Edge functions. With y downwards and vertices p, q, r in the order that makes the doubled area positive,
+//     E(c) = A (c.x - p.x) + B (c.y - p.y),   A = p.y - q.y,  B = q.x - p.x      (sub-pixels squared)
+// is positive for c on the inner side of edge p -> q, and all three are positive exactly inside. A centre on an edge
+// (E = 0) belongs to the triangle if the edge is a left one (A > 0: it runs upwards) or a top one (A = 0, B > 0); so
+// the others get a bias of -1 and "inside" is E + bias >= 0 for every edge. Stepping by a pixel adds 256 A or 256 B,
+// hence the sign depends only on e = floor((E + bias) / 256), which steps by A and B.
+#pragma once
+
+#include <cstdint>
+
+#include "obscura/raster/view.h"
+
+namespace obscura::raster {
+
+// Depth key at the centre c: clamp(key0 + ((xGradient (c.x - p0.x)) + (yGradient (c.y - p0.y))), keyMin, keyMax), p0 the
+// triangle's vertex 0 (of the mesh, not of the order above). The clamp keeps slivers inside their range.
+
+constexpr int kSmallExtentSub = 64 * kSub;  // both extents of a small triangle are at most this
+
+// A, B <= 2^14, centres are at most one pixel outside the box: |E| <= 2 * 2^14 * (2^14 + 2^8) < 2^31, in 32 bits.
+static_assert(int64_t(2) * kSmallExtentSub * (kSmallExtentSub + kSub) < (int64_t(1) << 31));
+
+struct alignas(64) SmallTriangle {
+  int32_t e[3];           // at the centre of pixel (x, y)
+  int16_t a[2], b[2];     // edges 0 and 1; those of edge 2 make the sums zero
+  int16_t x, y;           // first column and row whose centres lie in the bounding box, inside the image
+  uint8_t width, height;  // of that box, in pixels
+  uint8_t masked;         // alpha decides per pixel
+  float key0, xGradient, yGradient;  // gradients per sub-pixel
+  float xFromP0, yFromP0;            // centre of pixel (x, y) minus p0, sub-pixels, exact
+  float keyMin, keyMax;
+  uint32_t id;
+};
+static_assert(sizeof(SmallTriangle) == 64, "one cache line");
+
+// Coordinates within the guard band: |A|, |B| <= 2^22, so |E| <= 2 * 2^22 * 2^22 = 2^45 fits in 64 bits.
+static_assert(int64_t(2) * (2ll * kGuardSub) * (2ll * kGuardSub) <= (int64_t(1) << 45));
+
+struct LargeTriangle {
+  int64_t e[3];  // E + bias at the centre of pixel (0, 0), not yet divided
+  int32_t a[3], b[3];
+  int32_t x0, y0, x1, y1;  // box of covered centres inside the image, inclusive, pixels
+  float key0, xGradient, yGradient;
+  int32_t p0x, p0y;
+  float keyMin, keyMax;
+  uint32_t id;
+  bool masked;
+};
+
+// Three snapped vertices, in the mesh's order.
+struct SnappedTriangle {
+  int32_t x[3], y[3];
+  float key[3];
+};
+
+enum class SetupResult { Covers, FacesAway, Outside };  // FacesAway: or has no area; Outside: covers no pixel centre
+
+// Any size. facing: +1 only counter-clockwise triangles are seen, -1 only clockwise ones, 0 both. Fills all of `out`
+// but id and masked; what it holds is unspecified unless the result is Covers.
+SetupResult setupTriangle(const View& view, const SnappedTriangle& t, int facing, LargeTriangle& out);
+
+}  // namespace obscura::raster

@@ -1,0 +1,67 @@
+// The post process on a test scene, from G-buffer to display bytes.
+#pragma once
+
+#include <optional>
+
+#include "obscura/post/display.h"
+#include "obscura/post/transfer_samples.h"
+#include "test_scene.h"
+
+namespace obscura::tests {
+
+struct PostFrame {
+  raster::GBuffer g;
+  post::TransferInput in;
+  post::TransferSums sums;
+  post::Transfer transfer;
+  post::LinearColor color;
+  post::DisplayImage display;
+};
+
+inline post::TransferInput transferInput(const raster::GBuffer& g, const raster::Camera& camera, const post::AmbientSettings& settings) {
+  return {&g, post::makeProjector(camera, g.width, g.height), settings, post::transferSamples(settings)};
+}
+
+// The passes on frame.g; `target` empty: by the scalar twins.
+inline void runPost(PostFrame& f, const raster::Camera& camera, const post::AmbientSettings& settings,
+                    std::optional<raster::Target> target, post::Occlusion occlusion = post::Occlusion::Transfer) {
+  const int h = f.g.height;
+  const post::DisplayTable table;
+  f.in = transferInput(f.g, camera, settings);
+  f.sums = post::makeTransferSums(f.in);
+  f.transfer = post::makeTransfer(f.g.width, h, true, true);
+  f.color = post::makeLinearColor(f.g.width, h);
+  f.display = post::makeDisplayImage(f.g.width, h);
+  const post::LightInput light{&f.g, &f.transfer, occlusion, glm::vec3(0.9f, 1, 1.3f), glm::vec3(0.1f, 0.2f, 0.3f)};
+  if (target) {
+    post::ambientTransfer(f.in, 0, h, f.sums, *target);
+    post::depthFilter(f.in, f.sums, 0, h, f.transfer, *target);
+    post::light(light, 0, h, f.color, *target);
+    post::display(f.color, table, 0, h, f.display, *target);
+  } else {
+    post::ambientTransferRef(f.in, 0, h, f.sums);
+    post::depthFilterRef(f.in, f.sums, 0, h, f.transfer);
+    post::lightRef(light, 0, h, f.color);
+    post::displayRef(f.color, table, 0, h, f.display);
+  }
+}
+
+inline raster::GBuffer gbufferOf(const TestScene& s) {
+  raster::Rasterizer rasterizer;
+  raster::GBuffer g;
+  rasterizer.render(s.list(), s.camera, s.width, s.height, kAllPlanes, g);
+  return g;
+}
+
+inline std::string firstDifference(const PostFrame& a, const PostFrame& b) {
+  std::string d = firstDifference("numerator", a.sums.numerator, b.sums.numerator);
+  if (d.empty()) d = firstDifference("obscurance", a.transfer.obscurance, b.transfer.obscurance);
+  for (int c = 0; c < 3 && d.empty(); ++c) {
+    d = firstDifference("denominator", a.sums.denominator[c], b.sums.denominator[c]);
+    if (d.empty()) d = firstDifference("transfer", a.transfer.w[c], b.transfer.w[c]);
+    if (d.empty()) d = firstDifference("color", a.color.rgb[c], b.color.rgb[c]);
+  }
+  return d.empty() ? firstDifference("display", a.display.rgba, b.display.rgba) : d;
+}
+
+}  // namespace obscura::tests
