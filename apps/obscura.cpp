@@ -29,7 +29,8 @@ class WrappingFormatter : public CLI::Formatter {
 int runCommand(obscura::apps::RenderCommand& render) try {
   return render.run();
 } catch (const std::bad_alloc&) {
-  return obscura::apps::fail({obscura::engine::ErrorCode::BadInput, "not enough memory: try a smaller --size or fewer --aov", "", ""});
+  return obscura::apps::fail(
+      {obscura::engine::ErrorCode::BadInput, "not enough memory: try a smaller --size or fewer --aov", "", ""});
 }
 
 }  // namespace
@@ -47,7 +48,8 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
-    return obscura::apps::fail({obscura::engine::ErrorCode::Usage, std::string(e.what()) + " (see obscura render --help)", "", ""});
+    return obscura::apps::fail(
+        {obscura::engine::ErrorCode::Usage, std::string(e.what()) + " (see obscura render --help)", "", ""});
   }
   return runCommand(render);
 }

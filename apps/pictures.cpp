@@ -1,7 +1,9 @@
 #include "obscura/apps/pictures.h"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 #include "obscura/engine/plane_image.h"
@@ -71,37 +73,78 @@ Image greyToRgb(const Image& grey) {
   return rgb;
 }
 
-Image interleaved(const Plane (&p)[3]) { return engine::interleave({&p[0], &p[1], &p[2]}); }
+// The AOV's planes: float or uint32_t alike, as 32 bits per element.
+struct Planes {
+  std::vector<const void*> first;  // row 0 of each
+  size_t stride = 0;               // bytes from one row to the next
+  Format format = Format::F32;
+};
+
+template <class T>
+void add(Planes& planes, const raster::Plane<T>& plane) {
+  planes.first.push_back(plane.data());
+  planes.stride = plane.stride() * sizeof(T);
+  planes.format = std::is_same_v<T, float> ? Format::F32 : Format::U32;
+}
+
+Planes planesOf(const Frame& frame, Aov aov) {
+  Planes p;
+  const auto three = [&](const Plane (&planes)[3]) {
+    for (const Plane& plane : planes) add(p, plane);
+  };
+  switch (aov) {
+    case Aov::Color: three(frame.color.rgb); break;
+    case Aov::Depth: add(p, frame.g.depth); break;
+    case Aov::Normal: three(frame.g.normal); break;
+    case Aov::Albedo: three(frame.g.albedo); break;
+    case Aov::Emissive: three(frame.g.emissive); break;
+    case Aov::Obscurance: add(p, frame.transfer.obscurance); break;
+    case Aov::Transfer: three(frame.transfer.w); break;
+    case Aov::Position: three(frame.g.position); break;
+    case Aov::Triangle: add(p, frame.g.triangle); break;
+    case Aov::Instance: add(p, frame.g.instance); break;
+    case Aov::Material: add(p, frame.g.material); break;
+  }
+  return p;
+}
+
+Image imageOf(const engine::RowSource& rows) {
+  Image image(rows.width, rows.height, rows.channels, rows.format);
+  const size_t rowBytes = size_t(rows.width) * size_t(rows.channels) * bytesOf(rows.format);
+  for (int y = 0; y < rows.height; ++y) std::memcpy(image.row<uint8_t>(0) + size_t(y) * rowBytes, rows.row(y), rowBytes);
+  return image;
+}
 
 }  // namespace
 
-Image planeImage(const Frame& frame, Aov aov) {
-  switch (aov) {
-    case Aov::Color: return interleaved(frame.color.rgb);
-    case Aov::Depth: return engine::interleave({&frame.g.depth});
-    case Aov::Normal: return interleaved(frame.g.normal);
-    case Aov::Albedo: return interleaved(frame.g.albedo);
-    case Aov::Emissive: return interleaved(frame.g.emissive);
-    case Aov::Obscurance: return engine::interleave({&frame.transfer.obscurance});
-    case Aov::Transfer: return interleaved(frame.transfer.w);
-    case Aov::Position: return interleaved(frame.g.position);
-    case Aov::Triangle: return engine::interleave({&frame.g.triangle});
-    case Aov::Instance: return engine::interleave({&frame.g.instance});
-    case Aov::Material: return engine::interleave({&frame.g.material});
-  }
-  return {};
+engine::RowSource planeRows(const Frame& frame, Aov aov) {
+  const Planes planes = planesOf(frame, aov);
+  const size_t width = size_t(frame.width), channels = planes.first.size();
+  // Copied as integers: a float that is copied as a float might lose the payload of a NaN.
+  const auto row = [planes, width, channels, buffer = std::vector<uint32_t>(width * channels)](int y) mutable -> const void* {
+    for (size_t c = 0; c < channels; ++c) {
+      const uint8_t* from = static_cast<const uint8_t*>(planes.first[c]) + size_t(y) * planes.stride;
+      for (size_t x = 0; x < width; ++x) std::memcpy(&buffer[x * channels + c], from + x * 4, 4);
+    }
+    return buffer.data();
+  };
+  return {frame.width, frame.height, int(channels), planes.format, row};
 }
 
-Image displayPicture(const Frame& frame) {
-  Image image(frame.width, frame.height, 3, Format::U8);
-  for (int y = 0; y < image.height; ++y) {
+engine::RowSource displayRows(const Frame& frame) {
+  const auto row = [&frame, buffer = std::vector<uint8_t>(size_t(frame.width) * 3)](int y) mutable -> const void* {
     const uint32_t* from = frame.display.rgba.row(y);
-    uint8_t* to = image.row<uint8_t>(y);
-    for (int x = 0; x < image.width; ++x)
+    uint8_t* to = buffer.data();
+    for (int x = 0; x < frame.width; ++x)
       for (int c = 0; c < 3; ++c) *to++ = uint8_t(from[x] >> (8 * c));
-  }
-  return image;
+    return buffer.data();
+  };
+  return {frame.width, frame.height, 3, Format::U8, row};
 }
+
+Image planeImage(const Frame& frame, Aov aov) { return imageOf(planeRows(frame, aov)); }
+
+Image displayPicture(const Frame& frame) { return imageOf(displayRows(frame)); }
 
 Image picture(const Frame& frame, Aov aov, int bits) {
   switch (aov) {

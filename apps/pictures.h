@@ -2,6 +2,7 @@
 #pragma once
 
 #include "obscura/engine/aov.h"
+#include "obscura/engine/digest.h"
 #include "obscura/engine/frame.h"
 #include "obscura/engine/image.h"
 
@@ -14,6 +15,10 @@ engine::Image planeImage(const engine::Frame& frame, engine::Aov aov);
 
 // The sRGB bytes of the colour, U8 RGB.
 engine::Image displayPicture(const engine::Frame& frame);
+
+// The same two row by row, for digests; they read the frame as long as they live.
+engine::RowSource planeRows(const engine::Frame& frame, engine::Aov aov);
+engine::RowSource displayRows(const engine::Frame& frame);
 
 // What a PNG holds. In 8 bits: color, albedo and emissive sRGB-encoded; obscurance and transfer linear, times 255 (they
 // are factors, not light), obscurance as grey; normal 255 (n / 2 + 1/2); see engine/plane_image.h for depth and ids;

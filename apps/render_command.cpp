@@ -29,7 +29,7 @@ using Bytes = std::vector<uint8_t>;
 
 constexpr const char* kExamples = R"(Examples:
   obscura render scene.glb -o image.png
-  obscura render scene.glb --size 1920x1080 --samples 16 -o image.png -o planes.exr --aov all
+  obscura render scene.glb --size 1920x1080 --samples 16 --picture image.png -o planes.exr --aov all
   obscura render scene.glb --aov depth,normal -o planes.npy     writes planes.depth.npy and planes.normal.npy
   obscura render scene.glb --eye 3,2,5 --target 0,1,0 --fov 60 -o - | display
   obscura render scene.glb --digest --timings
@@ -255,7 +255,7 @@ int RenderCommand::run() {
   if (!files) return failed(files.error());
   run.encode = watch.lap();
   Report report;
-  if (digest_) report.digests = digestLines(frame, request_.aovs);
+  if (digest_) report.digests = digestLines(frame, request_.aovs, options_.raster.threads);
   run.digest = watch.lap();
   for (size_t i = 0; i < files->size(); ++i)
     if (const auto done = engine::writeFileAtomically((*outputs)[i].path, (*files)[i]); !done) return failed(done.error());

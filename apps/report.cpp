@@ -6,6 +6,7 @@
 
 #include "obscura/apps/pictures.h"
 #include "obscura/engine/digest.h"
+#include "obscura/raster/parallel.h"
 
 namespace obscura::apps {
 namespace {
@@ -76,12 +77,16 @@ int fail(const engine::Error& error) {
   return kCannotWrite;
 }
 
-std::vector<std::string> digestLines(const engine::Frame& frame, const std::vector<engine::Aov>& aovs) {
-  std::vector<std::string> lines;
+std::vector<std::string> digestLines(const engine::Frame& frame, const std::vector<engine::Aov>& aovs, int threads) {
+  std::vector<std::pair<std::string, engine::RowSource>> sources;
   for (engine::Aov aov : aovs) {
-    lines.push_back(engine::digestLine(engine::infoOf(aov).name, planeImage(frame, aov)));
-    if (aov == engine::Aov::Color) lines.push_back(engine::digestLine("display", displayPicture(frame)));
+    sources.emplace_back(engine::infoOf(aov).name, planeRows(frame, aov));
+    if (aov == engine::Aov::Color) sources.emplace_back("display", displayRows(frame));
   }
+  std::vector<std::string> lines(sources.size());
+  raster::Parallel(threads).forRanges(lines.size(), 1, [&](size_t begin, size_t end, int) {
+    for (size_t i = begin; i < end; ++i) lines[i] = engine::digestLine(sources[i].first, sources[i].second);
+  });
   return lines;
 }
 

@@ -21,7 +21,7 @@ struct RunTimings {  // milliseconds; the frame's own are in Frame::timings
 };
 
 // One line per AOV in the order given, see engine::digestLine; after "color" also "display", the picture's sRGB bytes.
-std::vector<std::string> digestLines(const engine::Frame& frame, const std::vector<engine::Aov>& aovs);
+std::vector<std::string> digestLines(const engine::Frame& frame, const std::vector<engine::Aov>& aovs, int threads = 1);
 
 struct Report {
   std::vector<std::string> digests;  // as from digestLines; empty: not asked for

@@ -11,12 +11,21 @@ static_assert(sizeof(float) == 4, "f32 is four bytes");
 #error "digests are of little-endian values"
 #endif
 
-std::string digest(const Image& image) {
+namespace {
+
+RowSource rowsOf(const Image& image) {
+  const size_t rowBytes = size_t(image.width) * size_t(image.channels) * bytesOf(image.format);
+  return {image.width, image.height, image.channels, image.format,
+          [&image, rowBytes](int y) { return image.bytes.data() + size_t(y) * rowBytes; }};
+}
+
+}  // namespace
+
+std::string digest(const RowSource& rows) {
   XXH3_state_t state;
   XXH3_128bits_reset(&state);
-  const size_t rowBytes = size_t(image.width) * size_t(image.channels) * bytesOf(image.format);
-  for (size_t y = 0; y < size_t(image.height); ++y)
-    XXH3_128bits_update(&state, image.bytes.data() + y * rowBytes, rowBytes);
+  const size_t rowBytes = size_t(rows.width) * size_t(rows.channels) * bytesOf(rows.format);
+  for (int y = 0; y < rows.height; ++y) XXH3_128bits_update(&state, rows.row(y), rowBytes);
   const XXH128_hash_t hash = XXH3_128bits_digest(&state);
   std::string text;
   for (const XXH64_hash_t half : {hash.high64, hash.low64})
@@ -24,10 +33,14 @@ std::string digest(const Image& image) {
   return text;
 }
 
-std::string digestLine(const std::string& name, const Image& image) {
+std::string digest(const Image& image) { return digest(rowsOf(image)); }
+
+std::string digestLine(const std::string& name, const RowSource& rows) {
   static constexpr const char* kTypes[] = {"u8", "u16", "u32", "f32"};
-  return name + " " + std::to_string(image.width) + "x" + std::to_string(image.height) + "x" +
-         std::to_string(image.channels) + " " + kTypes[size_t(image.format)] + " " + digest(image);
+  return name + " " + std::to_string(rows.width) + "x" + std::to_string(rows.height) + "x" +
+         std::to_string(rows.channels) + " " + kTypes[size_t(rows.format)] + " " + digest(rows);
 }
+
+std::string digestLine(const std::string& name, const Image& image) { return digestLine(name, rowsOf(image)); }
 
 }  // namespace obscura::engine

@@ -33,8 +33,8 @@ class Bins {
   }
 
   void add(const SmallTriangle& t) {
-    const int bits = grid_.tileBits;
-    const int c0 = t.x >> bits, c1 = (t.x + t.width - 1) >> bits, r0 = t.y >> bits, r1 = (t.y + t.height - 1) >> bits;
+    const int bits = grid_.tileBits - kBlockBits;
+    const int c0 = t.x >> bits, c1 = (t.x + t.columns - 1) >> bits, r0 = t.y >> bits, r1 = (t.y + t.rows - 1) >> bits;
     for (int r = r0; r <= r1; ++r)
       for (int c = c0; c <= c1; ++c) small_[size_t(r) * size_t(grid_.columns) + size_t(c)].push_back(t);
   }

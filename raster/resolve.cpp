@@ -128,8 +128,8 @@ HWY_INLINE VF centersX(const View& view, int x) {
   return hn::ConvertTo(d, hn::Add(hn::Set(di, view.xCenterSub(x)), hn::ShiftLeft<kSubBits>(hn::Iota(di, 0))));
 }
 
-// The lanes `mask` of one vector show triangles of `draw`.
-void resolveDraw(const SurfaceContext& context, const Draw& draw, VI id, MF mask, int x, int y, GBuffer& out) {
+// The lanes `mask` of one vector show triangles of `draw`, the first of them the one with firstId.
+void resolveDraw(const SurfaceContext& context, const Draw& draw, VI id, uint32_t firstId, MF mask, int x, int y, GBuffer& out) {
   const DF d;
   const DI di;
   const DU du;
@@ -150,7 +150,11 @@ void resolveDraw(const SurfaceContext& context, const Draw& draw, VI id, MF mask
   Rgba color{hn::Set(d, m.baseColor.r), hn::Set(d, m.baseColor.g), hn::Set(d, m.baseColor.b), hn::Set(d, m.baseColor.a)};
   V3 emission{hn::Set(d, m.emissive.r), hn::Set(d, m.emissive.g), hn::Set(d, m.emissive.b)};
   if (normal || (albedo && !constantAlbedo) || (emissive && !constantEmissive)) {
-    const Seen s = seePixel(view, draw, triangle, xCenter, hn::Set(d, float(view.yCenterSub(y))));
+    const VF yCenter = hn::Set(d, float(view.yCenterSub(y)));
+    // Large triangles fill whole vectors.
+    const uint32_t one = firstId - draw.firstTriangle;
+    const bool same = hn::AllTrue(di, hn::Or(hn::Eq(triangle, hn::Set(di, int32_t(one))), hn::Not(lanes)));
+    const Seen s = same ? seePixels(view, draw, one, xCenter, yCenter) : seePixel(view, draw, triangle, xCenter, yCenter);
     if (normal) store3(mask, shadingNormal(context, draw, s), out.normal, x, y);
     if (!constantAlbedo && (albedo || m.unlit)) color = baseColor(context, draw, s);
     if (emissive && !m.unlit && m.emissiveMap.texture >= 0) {
@@ -193,6 +197,17 @@ void storeDepth(const View& view, VF key, MF covered, int x, int y, GBuffer& out
   store3(covered, {px, py, hn::Sub(zero, zView)}, out.position, x, y);
 }
 
+// Rows of pixels from blocks of them, four at a time.
+HWY_INLINE void rowFromBlocks(const TileBuffers& tile, int row, float* keys, uint32_t* ids) {
+  const hn::CappedTag<float, kBlock> d;
+  const hn::RebindToUnsigned<decltype(d)> du;
+  for (int column = 0; column < tile.width; column += kBlock)
+    for (int i = 0; i < kBlock; i += int(hn::Lanes(d))) {
+      hn::StoreU(hn::LoadU(d, tile.key + tile.at(column, row) + i), d, keys + column + i);
+      hn::StoreU(hn::LoadU(du, tile.id + tile.at(column, row) + i), du, ids + column + i);
+    }
+}
+
 void ResolveTile(const SurfaceContext& context, const TileBuffers& tile, bool covered, GBuffer& out) {
   const DF d;
   const DI di;
@@ -200,11 +215,12 @@ void ResolveTile(const SurfaceContext& context, const TileBuffers& tile, bool co
   const int lanes = int(hn::Lanes(d));
   const VI none = hn::Set(di, int32_t(kNoTriangle));
   const VF nothing = hn::Set(d, -std::numeric_limits<float>::infinity());
+  HWY_ALIGN float keys[1 << kMaxTileBits];
+  HWY_ALIGN uint32_t ids[1 << kMaxTileBits];
   const Draw* draw = nullptr;
   for (int row = 0; row < tile.height; ++row) {
     const int y = tile.y + row;
-    const float* keys = tile.key + size_t(row) * TileBuffers::kStride;
-    const uint32_t* ids = tile.id + size_t(row) * TileBuffers::kStride;
+    if (covered) rowFromBlocks(tile, row, keys, ids);
     for (int column = 0; column < tile.width; column += lanes) {
       const int x = tile.x + column;
       const VI id = covered ? hn::BitCast(di, hn::Load(du, ids + column)) : none;
@@ -219,10 +235,11 @@ void ResolveTile(const SurfaceContext& context, const TileBuffers& tile, bool co
       storeDepth(*context.view, hn::Load(d, keys + column), hn::RebindMask(d, rest), x, y, out);
       // Usually one draw; each round takes all lanes of the first lane's.
       do {
-        draw = &drawOf(context, ids[column + int(hn::FindKnownFirstTrue(di, rest))], draw);
+        const uint32_t first = ids[column + int(hn::FindKnownFirstTrue(di, rest))];
+        draw = &drawOf(context, first, draw);
         const VU offset = hn::Sub(hn::BitCast(du, id), hn::Set(du, draw->firstTriangle));
         const MI mine = hn::And(rest, hn::RebindMask(di, hn::Lt(offset, hn::Set(du, draw->triangleCount))));
-        resolveDraw(context, *draw, id, hn::RebindMask(d, mine), x, y, out);
+        resolveDraw(context, *draw, id, first, hn::RebindMask(d, mine), x, y, out);
         rest = hn::AndNot(mine, rest);
       } while (!hn::AllFalse(di, rest));
     }

@@ -55,7 +55,8 @@ int facingTriangles(const Draw& draw, const Cluster& cluster, int32_t* list) {
     const MI front = hn::And(hn::RebindMask(di, hn::Gt(side, error)), inside);
     const MI back = hn::RebindMask(di, hn::Lt(side, hn::Neg(error)));
     append(hn::Iota(di, t), front, list, count);
-    const MI unsure = hn::AndNot(hn::Or(front, back), inside);
+    const MI someArea = hn::RebindMask(di, hn::Gt(error, hn::Zero(d)));  // without it n is 0 and faces nothing
+    const MI unsure = hn::AndNot(hn::Or(front, back), hn::And(someArea, inside));
     if (HWY_UNLIKELY(!hn::AllFalse(di, unsure))) {
       HWY_ALIGN int32_t which[16 + 16];
       int n = 0;
@@ -106,18 +107,19 @@ HWY_INLINE Box boundingBox(const View& view, const Corners& c) {
           last(maxY, view.yHalfSub, view.height), hn::Sub(maxX, minX),        hn::Sub(maxY, minY)};
 }
 
-// Edge functions at the centre of the box's first pixel, see triangle.h. Only for small triangles.
+// Edge functions at the centre of pixel (x, y), at most a block away from the box; see triangle.h. Only for small
+// triangles.
 struct Edges {
   VI e[3], a[3], b[3];
 };
 
-HWY_INLINE Edges edgeFunctions(const View& view, const Corners& c, const Box& box, VI area) {
+HWY_INLINE Edges edgeFunctions(const View& view, const Corners& c, VI x, VI y, VI area) {
   const DI d;
   const MI clockwise = hn::Gt(area, hn::Zero(d));
   const VI px[3] = {c.x[0], hn::IfThenElse(clockwise, c.x[1], c.x[2]), hn::IfThenElse(clockwise, c.x[2], c.x[1])};
   const VI py[3] = {c.y[0], hn::IfThenElse(clockwise, c.y[1], c.y[2]), hn::IfThenElse(clockwise, c.y[2], c.y[1])};
-  const VI cx = hn::Add(hn::ShiftLeft<kSubBits>(box.x0), hn::Set(d, kSub / 2 - view.xHalfSub));
-  const VI cy = hn::Add(hn::ShiftLeft<kSubBits>(box.y0), hn::Set(d, kSub / 2 - view.yHalfSub));
+  const VI cx = hn::Add(hn::ShiftLeft<kSubBits>(x), hn::Set(d, kSub / 2 - view.xHalfSub));
+  const VI cy = hn::Add(hn::ShiftLeft<kSubBits>(y), hn::Set(d, kSub / 2 - view.yHalfSub));
   Edges out;
   for (int p = 0; p < 3; ++p) {
     const int q = p == 2 ? 0 : p + 1;
@@ -139,7 +141,7 @@ HWY_INLINE VI doubledArea(const Corners& c) {
 
 // What is needed of up to a vector of surviving triangles to write their records.
 struct Survivors {
-  HWY_ALIGN int32_t e[3][16], a[2][16], b[2][16], x[16], y[16], w[16], h[16], xFromP0[16], yFromP0[16];
+  HWY_ALIGN int32_t e[3][16], a[2][16], b[2][16], x[16], y[16], columns[16], rows[16], xFromP0[16], yFromP0[16];
   HWY_ALIGN int32_t dx1[16], dy1[16], dx2[16], dy2[16], area[16], triangle[16];
   HWY_ALIGN float key0[16], key1[16], key2[16], keyMin[16], keyMax[16], xGradient[16], yGradient[16];
 };
@@ -209,7 +211,7 @@ void SetupCluster(const View& view, const Draw& draw, const Cluster& cluster, co
     const MI turned = hn::And(candidates, wrong);
     MI keep = hn::AndNot(wrong, candidates);
     // A box of one pixel: is its centre inside?
-    const Edges edges = edgeFunctions(view, c, box, area);
+    const Edges edges = edgeFunctions(view, c, box.x0, box.y0, area);
     const MI onePixel = hn::And(hn::Eq(box.x0, box.x1), hn::Eq(box.y0, box.y1));
     const MI missed = hn::Lt(hn::Or(hn::Or(edges.e[0], edges.e[1]), edges.e[2]), hn::Zero(di));
     keep = hn::AndNot(hn::And(onePixel, missed), keep);
@@ -230,7 +232,9 @@ void SetupCluster(const View& view, const Draw& draw, const Cluster& cluster, co
     const Corners c = gatherCorners(vertices, packedCorners(index));
     const Box box = boundingBox(view, c);
     const VI area = doubledArea(c);
-    const Edges edges = edgeFunctions(view, c, box, area);
+    const VI bx = hn::ShiftRight<kBlockBits>(box.x0), by = hn::ShiftRight<kBlockBits>(box.y0);
+    const VI x = hn::ShiftLeft<kBlockBits>(bx), y = hn::ShiftLeft<kBlockBits>(by);
+    const Edges edges = edgeFunctions(view, c, x, y, area);
     const VF key0 = hn::GatherIndex(d, vertices.key, c.i[0]), key1 = hn::GatherIndex(d, vertices.key, c.i[1]);
     const VF key2 = hn::GatherIndex(d, vertices.key, c.i[2]);
     for (int k = 0; k < 3; ++k) hn::Store(edges.e[k], di, s.e[k]);
@@ -238,12 +242,12 @@ void SetupCluster(const View& view, const Draw& draw, const Cluster& cluster, co
       hn::Store(edges.a[k], di, s.a[k]);
       hn::Store(edges.b[k], di, s.b[k]);
     }
-    hn::Store(box.x0, di, s.x);
-    hn::Store(box.y0, di, s.y);
-    hn::Store(hn::Sub(box.x1, box.x0), di, s.w);
-    hn::Store(hn::Sub(box.y1, box.y0), di, s.h);
-    const VI cx = hn::Add(hn::ShiftLeft<kSubBits>(box.x0), hn::Set(di, kSub / 2 - view.xHalfSub));
-    const VI cy = hn::Add(hn::ShiftLeft<kSubBits>(box.y0), hn::Set(di, kSub / 2 - view.yHalfSub));
+    hn::Store(bx, di, s.x);
+    hn::Store(by, di, s.y);
+    hn::Store(hn::Sub(hn::ShiftRight<kBlockBits>(box.x1), bx), di, s.columns);
+    hn::Store(hn::Sub(hn::ShiftRight<kBlockBits>(box.y1), by), di, s.rows);
+    const VI cx = hn::Add(hn::ShiftLeft<kSubBits>(x), hn::Set(di, kSub / 2 - view.xHalfSub));
+    const VI cy = hn::Add(hn::ShiftLeft<kSubBits>(y), hn::Set(di, kSub / 2 - view.yHalfSub));
     hn::Store(hn::Sub(cx, c.x[0]), di, s.xFromP0);
     hn::Store(hn::Sub(cy, c.y[0]), di, s.yFromP0);
     hn::Store(hn::Sub(c.x[1], c.x[0]), di, s.dx1);
@@ -264,8 +268,8 @@ void SetupCluster(const View& view, const Draw& draw, const Cluster& cluster, co
       for (int n = 0; n < 2; ++n) t.a[n] = int16_t(s.a[n][k]), t.b[n] = int16_t(s.b[n][k]);
       t.x = int16_t(s.x[k]);
       t.y = int16_t(s.y[k]);
-      t.width = uint8_t(s.w[k] + 1);
-      t.height = uint8_t(s.h[k] + 1);
+      t.columns = uint8_t(s.columns[k] + 1);
+      t.rows = uint8_t(s.rows[k] + 1);
       t.masked = masked;
       t.key0 = s.key0[k];
       t.xGradient = s.xGradient[k];

@@ -16,15 +16,6 @@ HWY_BEFORE_NAMESPACE();
 namespace obscura::raster {
 namespace HWY_NAMESPACE {
 
-HWY_INLINE V3 gather3(Span<const glm::vec3> values, VI index) {
-  const DF d;
-  const DI di;
-  const float* base = &values.data()->x;
-  const VI at = hn::Add(hn::Add(index, index), index);
-  return {hn::GatherIndex(d, base, at), hn::GatherIndex(d, base, hn::Add(at, hn::Set(di, 1))),
-          hn::GatherIndex(d, base, hn::Add(at, hn::Set(di, 2)))};
-}
-
 HWY_INLINE V3 sub(const V3& a, const V3& b) { return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)}; }
 HWY_INLINE VF dot(const V3& a, const V3& b) {
   return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
@@ -40,23 +31,38 @@ HWY_INLINE V3 select(MF mask, const V3& yes, const V3& no) {
 
 // One triangle per lane, all of the same draw, seen from one pixel per lane.
 struct Seen {
-  VI index[3];   // vertices
+  bool one;      // the same triangle in all lanes: its vertices are read once, not gathered
+  uint32_t vertex[3];
+  VI index[3];   // vertices, where they differ
   V3 object[3];  // their positions, object space
   VF weight[3];  // barycentric, clamped: all >= 0, sum 1 but for rounding
   MF clockwise;  // as seen in the image
   VF w[3], hx[3], hy[3], sum;  // for the gradients
 };
 
-HWY_INLINE Seen seePixel(const View& view, const Draw& draw, VI triangle, VF xCenter, VF yCenter) {
+// Vertex attribute `values` (floats, kComponents a vertex), component c, of corner i.
+template <int kComponents>
+HWY_INLINE VF corner(const Seen& s, const float* values, int c, int i) {
   const DF d;
-  const DI di;
-  Seen s;
-  const VI at = hn::Add(hn::Add(triangle, triangle), triangle);
-  const int32_t* indices = reinterpret_cast<const int32_t*>(draw.mesh->indices.data());
+  if (s.one) return hn::Set(d, values[size_t(s.vertex[i]) * kComponents + size_t(c)]);
+  VI at = s.index[i];
+  if (kComponents == 2) at = hn::Add(at, at);
+  if (kComponents == 3) at = hn::Add(hn::Add(at, at), at);
+  if (kComponents == 4) at = hn::ShiftLeft<2>(at);
+  return hn::GatherIndex(d, values + c, at);
+}
+
+HWY_INLINE V3 corner3(const Seen& s, Span<const glm::vec3> values, int i) {
+  const float* v = &values.data()->x;
+  return {corner<3>(s, v, 0, i), corner<3>(s, v, 1, i), corner<3>(s, v, 2, i)};
+}
+
+// Weights, once the vertices are known.
+HWY_INLINE void weigh(const View& view, const Draw& draw, VF xCenter, VF yCenter, Seen& s) {
+  const DF d;
   const VF xc = hn::Sub(xCenter, hn::Set(d, view.xShiftSub)), yc = hn::Sub(yCenter, hn::Set(d, view.yShiftSub));
   for (int i = 0; i < 3; ++i) {
-    s.index[i] = hn::GatherIndex(di, indices, hn::Add(at, hn::Set(di, i)));
-    s.object[i] = gather3(draw.mesh->positions, s.index[i]);
+    s.object[i] = corner3(s, draw.mesh->positions, i);
     const V3 p = viewPosition(draw, s.object[i].x, s.object[i].y, s.object[i].z);
     s.w[i] = view.perspective ? hn::Neg(p.z) : hn::Set(d, 1.0f);
     s.hx[i] = hn::Sub(hn::Mul(p.x, hn::Set(d, view.xScaleSub)), hn::Mul(s.w[i], xc));
@@ -78,6 +84,32 @@ HWY_INLINE Seen seePixel(const View& view, const Draw& draw, VI triangle, VF xCe
   const VF rest = hn::Sub(one, s.weight[1]);
   s.weight[2] = clamped(b2, rest);
   s.weight[0] = hn::Sub(rest, s.weight[2]);
+}
+
+// Triangle of the mesh per lane.
+HWY_INLINE Seen seePixel(const View& view, const Draw& draw, VI triangle, VF xCenter, VF yCenter) {
+  const DI di;
+  Seen s;
+  s.one = false;
+  const VI at = hn::Add(hn::Add(triangle, triangle), triangle);
+  const int32_t* indices = reinterpret_cast<const int32_t*>(draw.mesh->indices.data());
+  for (int i = 0; i < 3; ++i) {
+    s.index[i] = hn::GatherIndex(di, indices, hn::Add(at, hn::Set(di, i)));
+    s.vertex[i] = 0;
+  }
+  weigh(view, draw, xCenter, yCenter, s);
+  return s;
+}
+
+// The same triangle in all lanes.
+HWY_INLINE Seen seePixels(const View& view, const Draw& draw, uint32_t triangle, VF xCenter, VF yCenter) {
+  Seen s;
+  s.one = true;
+  for (int i = 0; i < 3; ++i) {
+    s.vertex[i] = draw.mesh->indices[size_t(triangle) * 3 + size_t(i)];
+    s.index[i] = hn::Zero(DI());
+  }
+  weigh(view, draw, xCenter, yCenter, s);
   return s;
 }
 
@@ -86,18 +118,14 @@ HWY_INLINE VF interpolate(const Seen& s, VF a0, VF a1, VF a2) {
 }
 
 HWY_INLINE V3 interpolate3(const Seen& s, Span<const glm::vec3> values) {
-  const V3 a = gather3(values, s.index[0]), b = gather3(values, s.index[1]), c = gather3(values, s.index[2]);
+  const V3 a = corner3(s, values, 0), b = corner3(s, values, 1), c = corner3(s, values, 2);
   return {interpolate(s, a.x, b.x, c.x), interpolate(s, a.y, b.y, c.y), interpolate(s, a.z, b.z, c.z)};
 }
 
 // Component `c` of a span of glm::vec2 or vec4 at the three vertices.
 template <class T>
 HWY_INLINE void gatherComponent(Span<const T> values, const Seen& s, int c, VF out[3]) {
-  const DF d;
-  const DI di;
-  constexpr int kComponents = int(sizeof(T) / sizeof(float));
-  for (int i = 0; i < 3; ++i)
-    out[i] = hn::GatherIndex(d, &values.data()->x + c, hn::Mul(s.index[i], hn::Set(di, kComponents)));
+  for (int i = 0; i < 3; ++i) out[i] = corner<int(sizeof(T) / sizeof(float))>(s, &values.data()->x, c, i);
 }
 
 template <class T>

@@ -15,75 +15,117 @@ namespace obscura::raster {
 namespace HWY_NAMESPACE {
 
 // The part of `covered` where the triangle's alpha reaches the material's cutoff.
-HWY_NOINLINE MF alphaTest(const SurfaceContext& context, const Draw& draw, uint32_t id, VI x, int y, MF covered) {
+HWY_NOINLINE MF alphaTest(const SurfaceContext& context, uint32_t id, VI x, VI y, MF covered) {
   const DF d;
   const DI di;
   const View& view = *context.view;
+  const Draw& draw = drawOf(context, id);
   const VI xc = hn::Add(hn::ShiftLeft<kSubBits>(x), hn::Set(di, view.xCenterSub(0)));
-  const Seen s = seePixel(view, draw, hn::Set(di, int32_t(id - draw.firstTriangle)), hn::ConvertTo(d, xc),
-                          hn::Set(d, float(view.yCenterSub(y))));
+  const VI yc = hn::Add(hn::ShiftLeft<kSubBits>(y), hn::Set(di, view.yCenterSub(0)));
+  const Seen s = seePixels(view, draw, id - draw.firstTriangle, hn::ConvertTo(d, xc), hn::ConvertTo(d, yc));
   return hn::And(covered, hn::Ge(baseColor(context, draw, s).a, hn::Set(d, draw.material->alphaCutoff)));
 }
 
-// A triangle as the pixel loop sees it, in one tile: edge functions at (x0, y0), all in 32 bits.
-struct Clipped {
+// A triangle as the block loop sees it: edge functions at the upper left pixel of its first block in the tile.
+struct Blocks {
   int32_t e[3], a[3], b[3];
-  int x0, y0, x1, y1;  // inclusive, image pixels
+  int x, y, columns, rows;  // blocks, from the tile's first; at most 16 a row
   float key0, xGradient, yGradient, keyMin, keyMax;
-  float xFromP0, yFromP0;  // centre of (x0, y0) minus p0, exact
+  float xFromP0, yFromP0;   // that pixel's centre minus p0, exact
   uint32_t id;
-  bool masked;
 };
 
-HWY_INLINE void fill(const SurfaceContext& context, const Clipped& t, TileBuffers& out) {
+// One block's pixels of the vector that begins at pixel `first` of every block.
+struct PixelVector {
+  int first;
+  VI lx, ly;         // column and row in the block
+  VI offset[3];      // edge functions in the first block
+  VF xFromP0, yFromP0;
+};
+
+HWY_INLINE PixelVector pixelVector(const Blocks& t, int first) {
+  const DF d;
+  const DI di;
+  PixelVector v;
+  v.first = first;
+  v.lx = hn::And(hn::Iota(di, first), hn::Set(di, kBlock - 1));
+  v.ly = hn::ShiftRight<kBlockBits>(hn::Iota(di, first));
+  for (int i = 0; i < 3; ++i)
+    v.offset[i] = hn::Add(hn::Add(hn::Set(di, t.e[i]), hn::Mul(v.lx, hn::Set(di, t.a[i]))), hn::Mul(v.ly, hn::Set(di, t.b[i])));
+  v.xFromP0 = hn::Add(hn::ConvertTo(d, hn::ShiftLeft<kSubBits>(v.lx)), hn::Set(d, t.xFromP0));
+  v.yFromP0 = hn::Add(hn::ConvertTo(d, hn::ShiftLeft<kSubBits>(v.ly)), hn::Set(d, t.yFromP0));
+  return v;
+}
+
+template <bool kMasked>
+HWY_INLINE void fillBlock(const SurfaceContext& context, const Blocks& t, const PixelVector& v, int column, int row, TileBuffers& out) {
   const DF d;
   const DI di;
   const DU du;
-  const int lanes = int(hn::Lanes(d));
-  const VI iota = hn::Iota(di, 0);
-  VI a[3], e[3];
-  for (int i = 0; i < 3; ++i) {
-    a[i] = hn::Mul(iota, hn::Set(di, t.a[i]));
-    e[i] = hn::Add(hn::Set(di, t.e[i]), a[i]);
-  }
-  const VF key0 = hn::Set(d, t.key0), xGradient = hn::Set(d, t.xGradient);
+  auto edge = [&](int i) HWY_ATTR { return hn::Add(v.offset[i], hn::Set(di, (t.a[i] * column + t.b[i] * row) * kBlock)); };
+  const MI inside = hn::Not(hn::Lt(hn::Or(hn::Or(edge(0), edge(1)), edge(2)), hn::Zero(di)));
+  const size_t at = size_t(((t.y + row) * out.columns + t.x + column) * (kBlock * kBlock) + v.first);
+  const VF x = hn::Add(v.xFromP0, hn::Set(d, float(column * kBlock * kSub))), y = hn::Add(v.yFromP0, hn::Set(d, float(row * kBlock * kSub)));
   const VF keyMin = hn::Set(d, t.keyMin), keyMax = hn::Set(d, t.keyMax);
-  const VF xIota = hn::ConvertTo(d, hn::ShiftLeft<kSubBits>(iota));
+  VF key = hn::Add(hn::Set(d, t.key0), hn::Add(hn::Mul(hn::Set(d, t.xGradient), x), hn::Mul(hn::Set(d, t.yGradient), y)));
+  key = hn::IfThenElse(hn::Gt(key, keyMin), key, keyMin);
+  key = hn::IfThenElse(hn::Lt(key, keyMax), key, keyMax);
   const VU id = hn::Set(du, t.id);
-  for (int y = t.y0; y <= t.y1; ++y) {
-    float* keyRow = out.key + size_t(y - out.y) * TileBuffers::kStride + (t.x0 - out.x);
-    uint32_t* idRow = out.id + size_t(y - out.y) * TileBuffers::kStride + (t.x0 - out.x);
-    const VF yTerm = hn::Mul(hn::Set(d, t.yGradient), hn::Set(d, t.yFromP0 + float((y - t.y0) * kSub)));
-    VI row[3] = {e[0], e[1], e[2]};
-    for (int x = 0; x <= t.x1 - t.x0; x += lanes) {
-      const MI inside = hn::Not(hn::Lt(hn::Or(hn::Or(row[0], row[1]), row[2]), hn::Zero(di)));
-      if (!hn::AllFalse(di, inside)) {
-        const VF fromP0 = hn::Add(xIota, hn::Set(d, t.xFromP0 + float(x * kSub)));
-        VF key = hn::Add(key0, hn::Add(hn::Mul(xGradient, fromP0), yTerm));
-        key = hn::IfThenElse(hn::Gt(key, keyMin), key, keyMin);
-        key = hn::IfThenElse(hn::Lt(key, keyMax), key, keyMax);
-        const VF oldKey = hn::LoadU(d, keyRow + x);
-        const VU oldId = hn::LoadU(du, idRow + x);
-        const MF nearer = hn::Or(hn::Gt(key, oldKey), hn::And(hn::Eq(key, oldKey), hn::RebindMask(d, hn::Lt(id, oldId))));
-        MF wins = hn::And(nearer, hn::RebindMask(d, inside));
-        if (HWY_UNLIKELY(t.masked) && !hn::AllFalse(d, wins))
-          wins = alphaTest(context, drawOf(context, t.id), t.id, hn::Iota(di, t.x0 + x), y, wins);
-        hn::StoreU(hn::IfThenElse(wins, key, oldKey), d, keyRow + x);
-        hn::StoreU(hn::IfThenElse(hn::RebindMask(du, wins), id, oldId), du, idRow + x);
-      }
-      for (int i = 0; i < 3; ++i) row[i] = hn::Add(row[i], hn::Set(di, t.a[i] * lanes));
+  const VF oldKey = hn::Load(d, out.key + at);
+  const VU oldId = hn::Load(du, out.id + at);
+  const MF nearer = hn::Or(hn::Gt(key, oldKey), hn::And(hn::Eq(key, oldKey), hn::RebindMask(d, hn::Lt(id, oldId))));
+  MF wins = hn::And(nearer, hn::RebindMask(d, inside));
+  if (kMasked && !hn::AllFalse(d, wins)) {
+    const VI px = hn::Add(v.lx, hn::Set(di, out.x + (t.x + column) * kBlock)), py = hn::Add(v.ly, hn::Set(di, out.y + (t.y + row) * kBlock));
+    wins = alphaTest(context, t.id, px, py, wins);
+  }
+  hn::Store(hn::IfThenElse(wins, key, oldKey), d, out.key + at);
+  hn::Store(hn::IfThenElse(hn::RebindMask(du, wins), id, oldId), du, out.id + at);
+}
+
+template <bool kMasked>
+HWY_INLINE void fill(const SurfaceContext& context, const Blocks& t, TileBuffers& out) {
+  const DI di;
+  constexpr int kLanesPerBlock = kBlock * kBlock;
+  const int lanes = int(hn::Lanes(di));
+  if (t.columns * t.rows <= 4) {  // most triangles of fine meshes: nearly all their blocks are touched
+    for (int first = 0; first < kLanesPerBlock; first += lanes) {
+      const PixelVector v = pixelVector(t, first);
+      for (int row = 0; row < t.rows; ++row)
+        for (int column = 0; column < t.columns; ++column) fillBlock<kMasked>(context, t, v, column, row, out);
     }
-    for (int i = 0; i < 3; ++i) e[i] = hn::Add(e[i], hn::Set(di, t.b[i]));
+    return;
+  }
+  // A row of blocks at a time: those where no edge function is negative in all four corners.
+  HWY_ALIGN int32_t touched[16 + 16];
+  for (int row = 0; row < t.rows; ++row) {
+    int count = 0;
+    for (int column = 0; column < t.columns; column += lanes) {
+      const VI index = hn::Iota(di, column);
+      VI outside = hn::Sub(hn::Set(di, t.columns - 1), index);
+      for (int i = 0; i < 3; ++i) {
+        const int32_t greatest = t.e[i] + t.b[i] * row * kBlock + (kBlock - 1) * (std::max(t.a[i], 0) + std::max(t.b[i], 0));
+        outside = hn::Or(outside, hn::Add(hn::Set(di, greatest), hn::Mul(index, hn::Set(di, t.a[i] * kBlock))));
+      }
+      const MI may = hn::Not(hn::Lt(outside, hn::Zero(di)));
+      hn::StoreU(hn::Compress(index, may), di, touched + count);
+      count += int(hn::CountTrue(di, may));
+    }
+    for (int first = 0; count > 0 && first < kLanesPerBlock; first += lanes) {
+      const PixelVector v = pixelVector(t, first);
+      for (int i = 0; i < count; ++i) fillBlock<kMasked>(context, t, v, touched[i], row, out);
+    }
   }
 }
 
 HWY_INLINE void rasterSmall(const SurfaceContext& context, const SmallTriangle& t, TileBuffers& out) {
-  Clipped c;
-  c.x0 = std::max<int>(t.x, out.x);
-  c.y0 = std::max<int>(t.y, out.y);
-  c.x1 = std::min(t.x + t.width, out.x + out.width) - 1;
-  c.y1 = std::min(t.y + t.height, out.y + out.height) - 1;
-  const int dx = c.x0 - t.x, dy = c.y0 - t.y;
+  Blocks c;
+  const int x = t.x - (out.x >> kBlockBits), y = t.y - (out.y >> kBlockBits);
+  c.x = std::max(x, 0);
+  c.y = std::max(y, 0);
+  c.columns = std::min(x + t.columns, out.columns) - c.x;
+  c.rows = std::min(y + t.rows, (out.height + kBlock - 1) >> kBlockBits) - c.y;
+  const int dx = (c.x - x) * kBlock, dy = (c.y - y) * kBlock;
   c.a[0] = t.a[0], c.a[1] = t.a[1], c.a[2] = -t.a[0] - t.a[1];
   c.b[0] = t.b[0], c.b[1] = t.b[1], c.b[2] = -t.b[0] - t.b[1];
   for (int i = 0; i < 3; ++i) c.e[i] = t.e[i] + c.a[i] * dx + c.b[i] * dy;
@@ -91,34 +133,35 @@ HWY_INLINE void rasterSmall(const SurfaceContext& context, const SmallTriangle& 
   c.xFromP0 = t.xFromP0 + float(dx * kSub);
   c.yFromP0 = t.yFromP0 + float(dy * kSub);
   c.id = t.id;
-  c.masked = t.masked != 0;
-  fill(context, c, out);
+  HWY_UNLIKELY(t.masked) ? fill<true>(context, c, out) : fill<false>(context, c, out);
 }
 
 HWY_INLINE void rasterLarge(const SurfaceContext& context, const LargeTriangle& t, TileBuffers& out) {
-  Clipped c;
-  c.x0 = std::max(t.x0, out.x);
-  c.y0 = std::max(t.y0, out.y);
-  c.x1 = std::min(t.x1, out.x + out.width - 1);
-  c.y1 = std::min(t.y1, out.y + out.height - 1);
+  Blocks c;
+  const int x0 = std::max(t.x0, out.x), y0 = std::max(t.y0, out.y);
+  const int x1 = std::min(t.x1, out.x + out.width - 1), y1 = std::min(t.y1, out.y + out.height - 1);
+  c.x = (x0 - out.x) >> kBlockBits;
+  c.y = (y0 - out.y) >> kBlockBits;
+  c.columns = ((x1 - out.x) >> kBlockBits) - c.x + 1;
+  c.rows = ((y1 - out.y) >> kBlockBits) - c.y + 1;
+  const int x = out.x + c.x * kBlock, y = out.y + c.y * kBlock;
   for (int i = 0; i < 3; ++i) {
-    const int64_t e = (t.e[i] + (int64_t(t.a[i]) * c.x0 + int64_t(t.b[i]) * c.y0) * kSub) >> kSubBits;
+    const int64_t e = (t.e[i] + (int64_t(t.a[i]) * x + int64_t(t.b[i]) * y) * kSub) >> kSubBits;
     c.e[i] = int32_t(std::clamp(e, -kEdgeLimit, kEdgeLimit));
     c.a[i] = t.a[i];
     c.b[i] = t.b[i];
   }
   c.key0 = t.key0, c.xGradient = t.xGradient, c.yGradient = t.yGradient, c.keyMin = t.keyMin, c.keyMax = t.keyMax;
-  c.xFromP0 = float(context.view->xCenterSub(c.x0) - t.p0x);
-  c.yFromP0 = float(context.view->yCenterSub(c.y0) - t.p0y);
+  c.xFromP0 = float(context.view->xCenterSub(x) - t.p0x);
+  c.yFromP0 = float(context.view->yCenterSub(y) - t.p0y);
   c.id = t.id;
-  c.masked = t.masked;
-  fill(context, c, out);
+  HWY_UNLIKELY(t.masked) ? fill<true>(context, c, out) : fill<false>(context, c, out);
 }
 
 void RasterTile(const SurfaceContext& context, int tile, Span<const Bins> bins, TileBuffers& out) {
-  const size_t elements = size_t(out.height) * TileBuffers::kStride;
-  std::fill_n(out.key, elements, -std::numeric_limits<float>::infinity());
-  std::fill_n(out.id, elements, kNoTriangle);
+  const size_t pixels = size_t(out.columns * ((out.height + kBlock - 1) >> kBlockBits)) << (2 * kBlockBits);
+  std::fill_n(out.key, pixels, -std::numeric_limits<float>::infinity());
+  std::fill_n(out.id, pixels, kNoTriangle);
   for (const Bins& b : bins) {
     for (uint32_t index : b.large(tile)) rasterLarge(context, b.triangle(index), out);
     for (const SmallTriangle& t : b.small(tile)) rasterSmall(context, t, out);
@@ -142,6 +185,7 @@ bool rasterTile(const SurfaceContext& context, const TileGrid& grid, int tile, S
   out.y = (tile / grid.columns) << grid.tileBits;
   out.width = std::min(1 << grid.tileBits, grid.width - out.x);
   out.height = std::min(1 << grid.tileBits, grid.height - out.y);
+  out.columns = (1 << grid.tileBits) >> kBlockBits;
   const bool any = std::any_of(bins.begin(), bins.end(), [&](const Bins& b) { return !b.small(tile).empty() || !b.large(tile).empty(); });
   if (any) OBSCURA_DISPATCH(RasterTile, target)(context, tile, bins, out);
   return any;

@@ -11,17 +11,25 @@ namespace obscura::raster {
 
 constexpr int kMinTileBits = 4, kMaxTileBits = 6;  // 16, 32 or 64 pixels
 // Edge functions in a tile fit in 32 bits: |A|, |B| <= 2 kGuardSub, and the first value is clamped to +-kEdgeLimit. That
-// keeps its sign in all of the tile, and the steps, 15 lanes beyond the last column included, stay below 2^31.
+// keeps its sign in all of the tile, and the steps across the tile stay below 2^31.
 constexpr int64_t kEdgeLimit = int64_t(1) << 30;
 static_assert(2ll * ((1 << kMaxTileBits) - 1) * 2 * kGuardSub <= kEdgeLimit);
-static_assert(kEdgeLimit + (2ll * ((1 << kMaxTileBits) - 1) + 15) * 2 * kGuardSub < (int64_t(1) << 31));
+static_assert(kEdgeLimit + 2ll * ((1 << kMaxTileBits) - 1) * 2 * kGuardSub < (int64_t(1) << 31));
 
-// The pixels of one tile. Rows have 16 elements of padding, so that a vector may start anywhere in a row.
+// The pixels of one tile: row after row of blocks, each of kBlock x kBlock pixels, row by row. Whole vectors, aligned and
+// always the same ones, are loaded and stored, so that a load can take what the store before it has just written.
 struct TileBuffers {
-  static constexpr int kStride = (1 << kMaxTileBits) + 16;
-  alignas(64) float key[kStride << kMaxTileBits];
-  alignas(64) uint32_t id[kStride << kMaxTileBits];  // kNoTriangle where nothing was drawn
-  int x = 0, y = 0, width = 0, height = 0;           // of the tile, inside the image
+  static constexpr int kPixels = 1 << (2 * kMaxTileBits);
+  alignas(64) float key[kPixels];
+  alignas(64) uint32_t id[kPixels];         // kNoTriangle where nothing was drawn
+  int x = 0, y = 0, width = 0, height = 0;  // of the tile, inside the image
+  int columns = 0;                          // blocks in a row
+
+  // Element of a pixel of the tile.
+  int at(int column, int row) const {
+    return (((row >> kBlockBits) * columns + (column >> kBlockBits)) << (2 * kBlockBits)) + ((row & (kBlock - 1)) << kBlockBits) +
+           (column & (kBlock - 1));
+  }
 };
 
 // The winner of a pixel is the triangle with the larger key, on equal keys the one with the smaller id, so the order

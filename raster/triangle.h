@@ -19,17 +19,20 @@ namespace obscura::raster {
 
 constexpr int kSmallExtentSub = 64 * kSub;  // both extents of a small triangle are at most this
 
-// A, B <= 2^14, centres are at most one pixel outside the box: |E| <= 2 * 2^14 * (2^14 + 2^8) < 2^31, in 32 bits.
-static_assert(int64_t(2) * kSmallExtentSub * (kSmallExtentSub + kSub) < (int64_t(1) << 31));
+// Tiles are stored and rasterized in blocks of 4 x 4 pixels: one AVX-512 vector, two of AVX2, four of SSE or NEON.
+constexpr int kBlockBits = 2, kBlock = 1 << kBlockBits;
+
+// A, B <= 2^14, centres are less than a block outside the box: |E| <= 2 * 2^14 * (2^14 + 2^10) < 2^31, in 32 bits.
+static_assert(int64_t(2) * kSmallExtentSub * (kSmallExtentSub + kBlock * kSub) < (int64_t(1) << 31));
 
 struct alignas(64) SmallTriangle {
-  int32_t e[3];           // at the centre of pixel (x, y)
-  int16_t a[2], b[2];     // edges 0 and 1; those of edge 2 make the sums zero
-  int16_t x, y;           // first column and row whose centres lie in the bounding box, inside the image
-  uint8_t width, height;  // of that box, in pixels
-  uint8_t masked;         // alpha decides per pixel
+  int32_t e[3];             // at the centre of the upper left pixel of block (x, y)
+  int16_t a[2], b[2];       // edges 0 and 1; those of edge 2 make the sums zero
+  int16_t x, y;             // first blocks that the covered centres' box touches, inside the image
+  uint8_t columns, rows;    // how many of them
+  uint8_t masked;           // alpha decides per pixel
   float key0, xGradient, yGradient;  // gradients per sub-pixel
-  float xFromP0, yFromP0;            // centre of pixel (x, y) minus p0, sub-pixels, exact
+  float xFromP0, yFromP0;            // centre of that pixel minus p0, sub-pixels, exact
   float keyMin, keyMax;
   uint32_t id;
 };

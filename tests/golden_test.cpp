@@ -7,6 +7,8 @@
 #include <fstream>
 #include <sstream>
 
+#include <oneapi/tbb/global_control.h>
+
 #include "obscura/apps/demo_scene.h"
 #include "obscura/apps/pictures.h"
 #include "obscura/apps/report.h"
@@ -117,4 +119,25 @@ TEST_CASE("golden: the demo scene in an orthographic view, obscurance only") {
   s.transfer.membership = post::Membership::Sqrt;
   s.transfer.filter = false;
   checkGolden("orthographic", s);
+}
+
+TEST_CASE("golden: threads, targets, tile sizes, skipping and the scalar twins give the same digest of every plane") {
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, 8);
+  const engine::FrameSettings settings = frameOf(100, 75);
+  engine::Frame frame;
+  auto digests = [&](const raster::Settings& raster, bool reference) {
+    engine::Renderer renderer(raster, reference);
+    REQUIRE(renderer.render(demo(), settings, frame).ok());
+    return apps::digestLines(frame, kAovs);
+  };
+  const std::vector<std::string> expected = digests({}, true);
+  for (raster::Target target : raster::supportedTargets())
+    for (int tile : {16, 32, 64})
+      for (int count : {1, 2, 3, 8})
+        for (bool skip : {true, false}) {
+          INFO(raster::targetName(target) << ", tile " << tile << ", " << count << " threads, skip " << skip
+                                          << "; repeat: obscura render SCENE --digest --target " << raster::targetName(target)
+                                          << " --tile " << tile << " --threads " << count << (skip ? "" : " --no-skip"));
+          REQUIRE(digests({count, target, tile, skip}, false) == expected);
+        }
 }
