@@ -55,7 +55,8 @@ std::optional<glm::vec3> colorOf(const std::string& text) {
 bool readSize(const std::string& text, int& width, int& height) {
   const size_t x = text.find_first_of("xX");
   if (x == text.npos) return false;
-  const auto w = numberOf<int>(std::string_view(text).substr(0, x)), h = numberOf<int>(std::string_view(text).substr(x + 1));
+  const auto w = numberOf<int>(std::string_view(text).substr(0, x)),
+             h = numberOf<int>(std::string_view(text).substr(x + 1));
   if (!w || !h || *w < 1 || *h < 1 || *w > raster::kMaxImageSize || *h > raster::kMaxImageSize) return false;
   width = *w;
   height = *h;
@@ -71,7 +72,8 @@ std::string shown(const glm::vec3& v) { return shown(v.x) + "," + shown(v.y) + "
 
 // An option whose text `read` turns into a value; false: refused, with what was expected.
 template <class Read>
-CLI::Option* addRead(CLI::App& app, const std::string& name, const std::string& type, const std::string& what, Read read) {
+CLI::Option* addRead(CLI::App& app, const std::string& name, const std::string& type, const std::string& what,
+                     Read read) {
   const auto set = [name, type, read](const std::string& text) {
     if (!read(text)) throw CLI::ValidationError(name, "\"" + text + "\" is not " + type);
   };
@@ -82,7 +84,8 @@ template <class T>
 using Names = std::vector<std::pair<std::string, T>>;
 
 template <class T>
-CLI::Option* addChoice(CLI::App& app, const std::string& name, const Names<T>& names, T& value, const std::string& what) {
+CLI::Option* addChoice(CLI::App& app, const std::string& name, const Names<T>& names, T& value,
+                       const std::string& what) {
   std::string list, current;
   for (const auto& [text, v] : names) {
     list += (list.empty() ? "" : "|") + text;
@@ -95,7 +98,8 @@ CLI::Option* addChoice(CLI::App& app, const std::string& name, const Names<T>& n
   });
 }
 
-CLI::Option* addInteger(CLI::App& app, const std::string& name, int least, int most, int& value, const std::string& what) {
+CLI::Option* addInteger(CLI::App& app, const std::string& name, int least, int most, int& value,
+                        const std::string& what) {
   const std::string type = std::to_string(least) + "..." + std::to_string(most);
   return addRead(app, name, type, what, [=, &value](const std::string& text) {
     const std::optional<int> n = numberOf<int>(text);
@@ -117,7 +121,9 @@ CLI::Option* addLength(CLI::App& app, const std::string& name, bool zero, std::o
 }
 
 void addVector(CLI::App& app, const std::string& name, std::optional<glm::dvec3>& value, const std::string& what) {
-  addRead(app, name, "X,Y,Z", what, [&value](const std::string& text) { return bool(value = vectorOf(text)); })->group("View");
+  addRead(app, name, "X,Y,Z", what, [&value](const std::string& text) {
+    return bool(value = vectorOf(text));
+  })->group("View");
 }
 
 void addColor(CLI::App& app, const std::string& name, glm::vec3& value, const std::string& what) {
@@ -132,10 +138,13 @@ void addColor(CLI::App& app, const std::string& name, glm::vec3& value, const st
 raster::Target instructionSet(const std::string& text) {
   const std::optional<raster::Target> wanted = raster::targetFromName(text);
   const std::vector<raster::Target> here = raster::supportedTargets();
-  if (wanted && (*wanted == raster::Target::Auto || std::find(here.begin(), here.end(), *wanted) != here.end())) return *wanted;
+  if (wanted && (*wanted == raster::Target::Auto || std::find(here.begin(), here.end(), *wanted) != here.end()))
+    return *wanted;
   std::string names = "auto";
   for (raster::Target t : here) names += std::string(", ") + raster::targetName(t);
-  throw CLI::ValidationError("--target", "\"" + text + (wanted ? "\" is not there on this machine" : "\" is neither a point X,Y,Z nor an instruction set") +
+  throw CLI::ValidationError("--target", "\"" + text +
+                                             (wanted ? "\" is not there on this machine"
+                                                     : "\" is neither a point X,Y,Z nor an instruction set") +
                                              "; there are: " + names);
 }
 
@@ -147,22 +156,30 @@ void addTarget(CLI::App& app, FrameOptions& o) {
       const std::optional<glm::dvec3> point = vectorOf(text);
       if (point) o.camera.target = point;
       else o.raster.target = instructionSet(text);
-      if (++(point ? points : names) > 1) throw CLI::ValidationError("--target", "\"" + text + "\" is the second of its kind");
+      if (++(point ? points : names) > 1)
+        throw CLI::ValidationError("--target", "\"" + text + "\" is the second of its kind");
     }
   };
   app.add_option_function<std::vector<std::string>>(
          "--target", read,
-         "X,Y,Z: what the camera of your own looks at [the middle of the scene]. NAME: instruction set to run on, which "
-         "changes no bit: auto, scalar, ssse3, sse4, avx2, avx3 or neon [auto: the best there is]. Both may be given")
-      ->type_name("X,Y,Z|NAME")->allow_extra_args(false)->group("View");
+         "X,Y,Z: what the camera of your own looks at [the middle of the scene]. NAME: instruction set to run on, "
+         "which changes no bit: auto, scalar, ssse3, sse4, avx2, avx3 or neon [auto: the best]. Both may be given")
+      ->type_name("X,Y,Z|NAME")
+      ->allow_extra_args(false)
+      ->group("View");
 }
 
 void addView(CLI::App& app, FrameOptions& o) {
   const std::string size = std::to_string(o.width) + "x" + std::to_string(o.height);
-  addRead(app, "--size", "WxH", "of the image in pixels, up to " + std::to_string(raster::kMaxImageSize) + " a side [" + size + "]",
-          [&o](const std::string& text) { return readSize(text, o.width, o.height); })->group("View");
-  app.add_option("--camera", o.camera.name, "camera of the file, by its name, its node's name or its index [the first; without one: a view of everything]")
-      ->type_name("NAME|INDEX")->group("View");
+  addRead(app, "--size", "WxH",
+          "of the image in pixels, up to " + std::to_string(raster::kMaxImageSize) + " a side [" + size + "]",
+          [&o](const std::string& text) { return readSize(text, o.width, o.height); })
+      ->group("View");
+  app.add_option(
+         "--camera", o.camera.name,
+         "camera of the file, by its name, its node's name or its index [the first; without one: a view of everything]")
+      ->type_name("NAME|INDEX")
+      ->group("View");
   addVector(app, "--eye", o.camera.eye, "a camera of your own: where it is");
   addTarget(app, o);
   addVector(app, "--up", o.camera.up, "what is up for it [0,1,0]");
@@ -171,7 +188,9 @@ void addView(CLI::App& app, FrameOptions& o) {
             o.camera.yFovDegrees = numberOf<double>(text);
             return o.camera.yFovDegrees && *o.camera.yFovDegrees > 0 && *o.camera.yFovDegrees < 180;
           })->group("View");
-  addInteger(app, "--scene", 0, 1 << 30, o.scene, "which of the file's scenes [the default one]")->type_name("INDEX")->group("View");
+  addInteger(app, "--scene", 0, 1 << 30, o.scene, "which of the file's scenes [the default one]")
+      ->type_name("INDEX")
+      ->group("View");
   addColor(app, "--background", o.background, "colour where nothing is seen");
   addColor(app, "--ambient-light", o.ambientLight, "the light that comes from everywhere");
 }
@@ -183,19 +202,29 @@ void addAmbient(CLI::App& app, FrameOptions& o) {
   const char* group = "Ambient transfer";
   const Names<bool> onOff = {{"on", true}, {"off", false}};
   const auto fraction = [](double f, const char* of) { return shown(f) + " x " + of; };
-  addChoice(app, "--ambient", {{"off", Occlusion::None}, {"obscurance", Occlusion::Obscurance}, {"transfer", Occlusion::Transfer}},
-            o.ambient, "what dims the ambient light: nothing, O or W")->group(group);
-  addChoice(app, "--albedo", {{"own", TransferAlbedo::Own}, {"neighbour", TransferAlbedo::Neighbour}}, o.transfer.albedo,
-            "W from the pixel's own albedo, or from that of what occludes it")->group(group);
-  addInteger(app, "--samples", 1, 64, o.transfer.samples, "n, rays per pixel [" + std::to_string(o.transfer.samples) + "]")->group(group);
-  addInteger(app, "--steps", 1, 4, o.transfer.steps, "m, test points per ray [" + std::to_string(o.transfer.steps) + "]")->group(group);
+  addChoice(app, "--ambient",
+            {{"off", Occlusion::None}, {"obscurance", Occlusion::Obscurance}, {"transfer", Occlusion::Transfer}},
+            o.ambient, "what dims the ambient light: nothing, O or W")
+      ->group(group);
+  addChoice(app, "--albedo", {{"own", TransferAlbedo::Own}, {"neighbour", TransferAlbedo::Neighbour}},
+            o.transfer.albedo, "W from the pixel's own albedo, or from that of what occludes it")
+      ->group(group);
+  addInteger(app, "--samples", 1, 64, o.transfer.samples,
+             "n, rays per pixel [" + std::to_string(o.transfer.samples) + "]")
+      ->group(group);
+  addInteger(app, "--steps", 1, 4, o.transfer.steps,
+             "m, test points per ray [" + std::to_string(o.transfer.steps) + "]")
+      ->group(group);
   addLength(app, "--radius", false, o.radius, "R, how far occluders reach",
             fraction(engine::kDefaultRadius, "the scene's size (the diagonal of its bounds)"))->group(group);
   addChoice(app, "--membership", {{"classic", Membership::Classic}, {"linear", Membership::Linear},
                                   {"sqrt", Membership::Sqrt}, {"exponential", Membership::Exponential}},
             o.transfer.membership, "how open a direction is by the distance of its occluder")->group(group);
-  addLength(app, "--bias", true, o.bias, "how deep behind a surface counts as inside", fraction(engine::kDefaultBias, "R"))->group(group);
-  addChoice(app, "--interleave", onOff, o.transfer.interleave, "other rays in each pixel of a 4x4 pattern")->group(group);
+  addLength(app, "--bias", true, o.bias, "how deep behind a surface counts as inside",
+            fraction(engine::kDefaultBias, "R"))
+      ->group(group);
+  addChoice(app, "--interleave", onOff, o.transfer.interleave, "other rays in each pixel of a 4x4 pattern")
+      ->group(group);
   addChoice(app, "--filter", onOff, o.transfer.filter, "4x4 box over pixels of nearly the same depth")->group(group);
   addLength(app, "--filter-threshold", false, o.filterThreshold, "difference of depth that the filter stops at",
             fraction(engine::kDefaultFilterThreshold, "R"))->group(group);
@@ -203,10 +232,17 @@ void addAmbient(CLI::App& app, FrameOptions& o) {
 
 void addExecution(CLI::App& app, FrameOptions& o) {
   const char* group = "Execution (changes no bit of the result; see also --target NAME)";
-  addInteger(app, "--threads", 0, kMaxThreads, o.raster.threads, "0: one per core [" + std::to_string(o.raster.threads) + "]")->group(group);
-  addChoice(app, "--tile", {{"16", 16}, {"32", 32}, {"64", 64}}, o.raster.tile, "pixels a side of a tile")->group(group);
-  app.add_flag_callback("--no-skip", [&o] { o.raster.skip = false; }, "cull nothing, rasterize every tile")->group(group);
-  app.add_flag("--reference", o.reference, "everything by the short scalar code that the fast one is checked against; slow")->group(group);
+  addInteger(app, "--threads", 0, kMaxThreads, o.raster.threads,
+             "0: one per core [" + std::to_string(o.raster.threads) + "]")
+      ->group(group);
+  addChoice(app, "--tile", {{"16", 16}, {"32", 32}, {"64", 64}}, o.raster.tile, "pixels a side of a tile")
+      ->group(group);
+  app.add_flag_callback(
+         "--no-skip", [&o] { o.raster.skip = false; }, "cull nothing, rasterize every tile")
+      ->group(group);
+  app.add_flag("--reference", o.reference,
+               "everything by the short scalar code that the fast one is checked against; slow")
+      ->group(group);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // obscura: from a glTF scene to exact pixels. One subcommand a job.
 #include <algorithm>
+#include <exception>
 #include <memory>
 #include <new>
 #include <string>
@@ -31,6 +32,8 @@ int runCommand(obscura::apps::RenderCommand& render) try {
 } catch (const std::bad_alloc&) {
   return obscura::apps::fail(
       {obscura::engine::ErrorCode::BadInput, "not enough memory: try a smaller --size or fewer --aov", "", ""});
+} catch (const std::exception& e) {  // threads that cannot be started, for instance
+  return obscura::apps::fail({obscura::engine::ErrorCode::BadInput, e.what(), "", ""});
 }
 
 }  // namespace

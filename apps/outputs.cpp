@@ -43,12 +43,14 @@ Result<engine::Done> planOne(const std::string& path, const OutputRequest& reque
   if (!format) return format.error();
   for (Aov aov : request.aovs)
     if (*format == FileFormat::Pfm && isId(aov))
-      return usage(std::string("a PFM cannot hold the ids of \"") + engine::infoOf(aov).name + "\"; write .npy or .exr", path);
+      return usage(std::string("a PFM cannot hold the ids of \"") + engine::infoOf(aov).name + "\"; write .npy or .exr",
+                   path);
   if (engine::holdsLayers(*format) || request.aovs.size() == 1) {
     out.push_back({path, *format, request.aovs});
     return engine::Done{};
   }
-  if (path == "-") return usage("only one image fits there: name one --aov, or --format exr for all as layers", shownName(path));
+  if (path == "-")
+    return usage("only one image fits there: name one --aov, or --format exr for all as layers", shownName(path));
   for (Aov aov : request.aovs) out.push_back({withAov(path, aov), *format, {aov}});
   return engine::Done{};
 }
@@ -81,7 +83,9 @@ Result<std::vector<Output>> planOutputs(const OutputRequest& request) {
 
 Result<engine::Done> checkWritable(const std::string& path) {
   if (path == "-") return engine::Done{};
-  const auto cannot = [&](const std::string& why) { return Error{ErrorCode::CannotWrite, "cannot write: " + why, path, ""}; };
+  const auto cannot = [&](const std::string& why) {
+    return Error{ErrorCode::CannotWrite, "cannot write: " + why, path, ""};
+  };
   struct stat info = {};
   const bool exists = stat(path.c_str(), &info) == 0;
   if (!exists && errno != ENOENT) return cannot(systemError());

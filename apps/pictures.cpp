@@ -36,7 +36,8 @@ Image mapped(const Image& planes, Format format, const F& map) {
 }
 
 Image encoded(const Image& planes, int bits) {
-  if (bits == 16) return mapped<uint16_t>(planes, Format::U16, [](float v) { return wordOf(raster::srgbFromLinear(v)); });
+  if (bits == 16)
+    return mapped<uint16_t>(planes, Format::U16, [](float v) { return wordOf(raster::srgbFromLinear(v)); });
   const post::DisplayTable table;  // so that a colour has the same byte here as in the displayed picture
   const float* first = table.threshold + 1;
   return mapped<uint8_t>(planes, Format::U8, [&](float v) {
@@ -62,7 +63,8 @@ Image positionPicture(const Frame& frame) {
     const double range = double(greatest) - double(least);
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x)
-        if (seen(x, y) && range > 0) image.row<uint8_t>(y)[x * 3 + c] = byteOf(float((double(p.at(x, y)) - double(least)) / range));
+        if (seen(x, y) && range > 0)
+          image.row<uint8_t>(y)[x * 3 + c] = byteOf(float((double(p.at(x, y)) - double(least)) / range));
   }
   return image;
 }
@@ -111,7 +113,8 @@ Planes planesOf(const Frame& frame, Aov aov) {
 Image imageOf(const engine::RowSource& rows) {
   Image image(rows.width, rows.height, rows.channels, rows.format);
   const size_t rowBytes = size_t(rows.width) * size_t(rows.channels) * bytesOf(rows.format);
-  for (int y = 0; y < rows.height; ++y) std::memcpy(image.row<uint8_t>(0) + size_t(y) * rowBytes, rows.row(y), rowBytes);
+  for (int y = 0; y < rows.height; ++y)
+    std::memcpy(image.row<uint8_t>(0) + size_t(y) * rowBytes, rows.row(y), rowBytes);
   return image;
 }
 
@@ -121,7 +124,8 @@ engine::RowSource planeRows(const Frame& frame, Aov aov) {
   const Planes planes = planesOf(frame, aov);
   const size_t width = size_t(frame.width), channels = planes.first.size();
   // Copied as integers: a float that is copied as a float might lose the payload of a NaN.
-  const auto row = [planes, width, channels, buffer = std::vector<uint32_t>(width * channels)](int y) mutable -> const void* {
+  const auto row = [planes, width, channels,
+                    buffer = std::vector<uint32_t>(width * channels)](int y) mutable -> const void* {
     for (size_t c = 0; c < channels; ++c) {
       const uint8_t* from = static_cast<const uint8_t*>(planes.first[c]) + size_t(y) * planes.stride;
       for (size_t x = 0; x < width; ++x) std::memcpy(&buffer[x * channels + c], from + x * 4, 4);

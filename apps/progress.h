@@ -9,8 +9,8 @@
 
 namespace obscura::apps {
 
-// Shows "[====>   ] 2/3 rendering  4.2 s" on standard error, if that is a terminal, from one second on; the line is gone
-// when the object is.
+// Shows "[====>   ] 2/3 rendering  4.2 s" on standard error, if that is a terminal, from one second on; the line is
+// gone when the object is.
 class Progress {
  public:
   Progress(int steps, bool quiet);

@@ -91,7 +91,8 @@ Result<std::vector<Aov>> aovsOf(const std::vector<std::string>& names) {
 
 bool needsTextures(const std::vector<Aov>& aovs) {
   return std::any_of(aovs.begin(), aovs.end(), [](Aov aov) {
-    return aov != Aov::Depth && aov != Aov::Position && aov != Aov::Triangle && aov != Aov::Instance && aov != Aov::Material;
+    return aov != Aov::Depth && aov != Aov::Position && aov != Aov::Triangle && aov != Aov::Instance &&
+           aov != Aov::Material;
   });
 }
 
@@ -114,7 +115,8 @@ Error nothingVisible(const engine::Scene& scene, const std::string& file) {
     std::snprintf(text, sizeof text, "%.3g,%.3g,%.3g", p.x, p.y, p.z);
     return std::string(text);
   };
-  const std::string where = scene.bounds.empty ? "" : " (the scene spans " + point(scene.bounds.min) + " to " + point(scene.bounds.max) + ")";
+  const std::string where =
+      scene.bounds.empty ? "" : " (the scene spans " + point(scene.bounds.min) + " to " + point(scene.bounds.max) + ")";
   return {ErrorCode::BadInput,
           "nothing is visible from this camera: choose another --camera, or --eye and --target" + where +
               ", or accept it with --allow-empty",
@@ -130,15 +132,15 @@ int print(const std::string& text, FILE* stream) {
 std::optional<tbb::global_control> allowThreads(int threads) {
   std::optional<tbb::global_control> control;
   constexpr auto kWhat = tbb::global_control::max_allowed_parallelism;
-  if (threads > 0 && size_t(threads) > tbb::global_control::active_value(kWhat)) control.emplace(kWhat, size_t(threads));
+  if (threads > 0 && size_t(threads) > tbb::global_control::active_value(kWhat))
+    control.emplace(kWhat, size_t(threads));
   return control;
 }
 
 }  // namespace
 
 void RenderCommand::addTo(CLI::App& program) {
-  command_ = program.add_subcommand("render", "renders a glTF scene with the ambient transfer function");
-  CLI::App& c = *command_;
+  CLI::App& c = *program.add_subcommand("render", "renders a glTF scene with the ambient transfer function");
   c.footer(kExamples);
   c.add_option("SCENE", scene_, "a .gltf or .glb file")->required()->type_name("");
 
@@ -147,8 +149,14 @@ void RenderCommand::addTo(CLI::App& program) {
                "file to write, repeatable: .png, .exr (all AOVs as layers), .pfm or .npy ([H,W,C], float32 or uint32). "
                "Several AOVs to a format of one image become STEM.AOV.EXT. - is standard output")
       ->type_name("FILE")->allow_extra_args(false)->group(output);
-  c.add_option("--aov", aovNames_, aovHelp())->type_name("NAME,...")->delimiter(',')->allow_extra_args(false)->group(output);
-  c.add_option("--picture", request_.picture, "the colour alone to this file, whatever --aov says")->type_name("FILE")->group(output);
+  c.add_option("--aov", aovNames_, aovHelp())
+      ->type_name("NAME,...")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->group(output);
+  c.add_option("--picture", request_.picture, "the colour alone to this file, whatever --aov says")
+      ->type_name("FILE")
+      ->group(output);
   c.add_option("--stages", request_.stages, "a PNG that shows depth, normal, albedo, O, W and the result side by side")
       ->type_name("FILE")->group(output);
   c.add_option("--bits", request_.bits,
@@ -157,10 +165,14 @@ void RenderCommand::addTo(CLI::App& program) {
       ->check(oneOf({"8", "16"}))->type_name("8|16")->group(output);
   c.add_option("--format", request_.format, "of standard output [png]")
       ->check(oneOf({"png", "exr", "pfm", "npy"}))->type_name("png|exr|pfm|npy")->group(output);
-  c.add_flag("--allow-empty", allowEmpty_, "an image in which nothing is seen is a warning, not an error")->group(output);
+  c.add_flag("--allow-empty", allowEmpty_, "an image in which nothing is seen is a warning, not an error")
+      ->group(output);
 
   const char* report = "Report (on standard output; on standard error if an image goes there)";
-  c.add_flag("--digest", digest_, "a line NAME WxHxC TYPE HASH for each AOV, XXH3-128 of its values; after color also display, its sRGB bytes")->group(report);
+  c.add_flag(
+       "--digest", digest_,
+       "a line NAME WxHxC TYPE HASH for each AOV, XXH3-128 of its values; after color also display, its sRGB bytes")
+      ->group(report);
   c.add_flag("--stats", stats_, "what was drawn and what could be skipped")->group(report);
   c.add_flag("--timings", timings_, "milliseconds of each stage")->group(report);
   c.add_flag("--json", json_, "one JSON object of those three, or of all three if none is named")->group(report);
@@ -171,8 +183,9 @@ void RenderCommand::addTo(CLI::App& program) {
 
 Result<std::vector<Output>> RenderCommand::plan() {
   const auto usage = [](const char* message) { return Error{ErrorCode::Usage, message, "", ""}; };
-  if (json_ && !digest_ && !stats_ && !timings_) digest_ = stats_ = timings_ = true;
-  if (request_.outputs.empty() && request_.picture.empty() && request_.stages.empty() && !digest_ && !stats_ && !timings_)
+  if (json_ && !digest_ && !stats_ && !timings_) digest_ = timings_ = true, stats_ = !options_.reference;
+  if (request_.outputs.empty() && request_.picture.empty() && request_.stages.empty() && !digest_ && !stats_ &&
+      !timings_)
     return usage("nothing to do: add -o FILE, --stages FILE, --digest, --stats or --timings");
   if (stats_ && options_.reference) return usage("--reference counts no statistics: leave out --stats");
   if (aovNames_.empty()) aovNames_ = {"color"};
@@ -258,13 +271,15 @@ int RenderCommand::run() {
   if (digest_) report.digests = digestLines(frame, request_.aovs, options_.raster.threads);
   run.digest = watch.lap();
   for (size_t i = 0; i < files->size(); ++i)
-    if (const auto done = engine::writeFileAtomically((*outputs)[i].path, (*files)[i]); !done) return failed(done.error());
+    if (const auto done = engine::writeFileAtomically((*outputs)[i].path, (*files)[i]); !done)
+      return failed(done.error());
   run.write = watch.lap();
 
   progress.finish();
   if (stats_) report.statistics = &frame.statistics;
   if (timings_) report.frame = &frame.timings, report.run = &run;
-  const bool imageOnStdout = std::any_of(outputs->begin(), outputs->end(), [](const Output& o) { return o.path == "-"; });
+  const bool imageOnStdout =
+      std::any_of(outputs->begin(), outputs->end(), [](const Output& o) { return o.path == "-"; });
   return print(json_ ? jsonOf(report) : textOf(report), imageOnStdout ? stderr : stdout);
 }
 

@@ -13,15 +13,15 @@ namespace obscura::apps {
 
 class RenderCommand {
  public:
-  void addTo(CLI::App& program);            // the subcommand and its options
-  int run();                                // after parsing; returns the exit code
+  void addTo(CLI::App& program);  // the subcommand and its options
+  int run();                      // after parsing; returns the exit code
 
  private:
   engine::Result<std::vector<Output>> plan();
   engine::Result<engine::Scene> load(bool textures) const;
-  engine::Result<std::vector<std::vector<uint8_t>>> encode(const std::vector<Output>& outputs, const engine::Frame& frame) const;
+  engine::Result<std::vector<std::vector<uint8_t>>> encode(const std::vector<Output>& outputs,
+                                                           const engine::Frame& frame) const;
 
-  CLI::App* command_ = nullptr;
   FrameOptions options_;
   OutputRequest request_;
   std::string scene_;

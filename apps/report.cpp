@@ -53,7 +53,8 @@ std::string jsonDigest(const std::string& line) {
   std::istringstream words(line);
   std::string name, size, type, hash;
   words >> name >> size >> type >> hash;
-  return "{\"name\": \"" + name + "\", \"size\": \"" + size + "\", \"type\": \"" + type + "\", \"hash\": \"" + hash + "\"}";
+  return "{\"name\": \"" + name + "\", \"size\": \"" + size + "\", \"type\": \"" + type + "\", \"hash\": \"" + hash +
+         "\"}";
 }
 
 // One line, whatever a file's names hold.

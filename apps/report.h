@@ -32,7 +32,8 @@ struct Report {
 
 // Text: the digest lines, then lines "NAME NUMBER".
 std::string textOf(const Report& report);
-// {"digests": [{"name", "size", "type", "hash"}...], "statistics": {NAME: NUMBER...}, "timings": {NAME: MILLISECONDS...}}
+// {"digests": [{"name", "size", "type", "hash"}...], "statistics": {NAME: NUMBER...}, "timings": {NAME:
+// MILLISECONDS...}}
 std::string jsonOf(const Report& report);
 
 }  // namespace obscura::apps

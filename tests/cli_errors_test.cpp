@@ -151,9 +151,9 @@ TEST_CASE("cli: a long render shows a bar on a terminal, and a signal ends it wi
   REQUIRE(terminal >= 0);
   REQUIRE(grantpt(terminal) == 0);
   REQUIRE(unlockpt(terminal) == 0);
-  const pid_t pid = startProgram({"render", w.scene, "--size", "2400x1800", "--reference", "--samples", "64", "--steps", "4",
-                                  "-o", w / "a.png"},
-                                 "/dev/null", ptsname(terminal));
+  const pid_t pid = startProgram(
+      {"render", w.scene, "--size", "2400x1800", "--reference", "--samples", "64", "--steps", "4", "-o", w / "a.png"},
+      "/dev/null", ptsname(terminal));
   REQUIRE(pid > 0);
   std::string shown;
   const auto readUntil = [&](const std::string& text) {

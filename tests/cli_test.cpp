@@ -30,7 +30,8 @@ struct Workplace {
   // 48 x 40 pixels, unless the options say otherwise.
   Finished render(const Words& options) const {
     Words words = {"render", scene};
-    if (std::find(options.begin(), options.end(), "--size") == options.end()) words.insert(words.end(), {"--size", "48x40"});
+    if (std::find(options.begin(), options.end(), "--size") == options.end())
+      words.insert(words.end(), {"--size", "48x40"});
     words.insert(words.end(), options.begin(), options.end());
     return runProgram(words);
   }
@@ -100,7 +101,8 @@ TEST_CASE("cli: PFM and EXR hold the same floats") {
   const engine::Result<std::vector<engine::Layer>> layers = engine::readLayers(w / "a.exr");
   REQUIRE(layers);
   REQUIRE(layers->size() == 3);
-  for (const engine::Layer& layer : *layers) REQUIRE(engine::digestLine(layer.name, layer.image) == digests.at(layer.name));
+  for (const engine::Layer& layer : *layers)
+    REQUIRE(engine::digestLine(layer.name, layer.image) == digests.at(layer.name));
 }
 
 TEST_CASE("cli: the PNG of the colour holds the bytes that the line 'display' is the digest of") {
@@ -147,7 +149,8 @@ TEST_CASE("cli: threads, instruction set, tile size, skipping and the reference 
   const Workplace w;
   const auto expected = w.digests({"--aov", "all"});
   REQUIRE(expected.size() == engine::allAovs().size() + 1);
-  for (const char* threads : {"1", "2", "3", "8"}) REQUIRE(w.digests({"--aov", "all", "--threads", threads}) == expected);
+  for (const char* threads : {"1", "2", "3", "8"})
+    REQUIRE(w.digests({"--aov", "all", "--threads", threads}) == expected);
   for (const char* tile : {"16", "32", "64"}) REQUIRE(w.digests({"--aov", "all", "--tile", tile}) == expected);
   for (raster::Target target : raster::supportedTargets())
     REQUIRE(w.digests({"--aov", "all", "--target", raster::targetName(target)}) == expected);
@@ -213,7 +216,8 @@ TEST_CASE("cli: a background in hexadecimal is in the picture as it was given") 
 TEST_CASE("cli: planes that show no texture still see through its holes") {
   const Workplace w;
   const auto all = w.digests({"--aov", "all"});
-  for (const char* name : {"depth", "triangle", "position"}) REQUIRE(w.digests({"--aov", name}).at(name) == all.at(name));
+  for (const char* name : {"depth", "triangle", "position"})
+    REQUIRE(w.digests({"--aov", name}).at(name) == all.at(name));
 }
 
 TEST_CASE("cli: the stages are one picture of six tiles") {
