@@ -96,12 +96,6 @@ bool needsTextures(const std::vector<Aov>& aovs) {
   });
 }
 
-bool showsMasks(const engine::Scene& scene) {
-  return std::any_of(scene.meshes.begin(), scene.meshes.end(), [&](const engine::Mesh& mesh) {
-    return scene.materials[mesh.material].alphaMode == raster::AlphaMode::Mask;
-  });
-}
-
 bool isEmpty(const raster::Plane<float>& depth) {
   constexpr float kNothing = std::numeric_limits<float>::infinity();
   for (int y = 0; y < depth.height(); ++y)
@@ -199,10 +193,7 @@ Result<engine::Scene> RenderCommand::load(bool textures) const {
   engine::LoadOptions options;
   options.scene = options_.scene;
   options.textures = textures;
-  Result<engine::Scene> scene = engine::sceneFromGltf(scene_, options);
-  // Where a mask is transparent decides what is seen: then the textures are needed after all.
-  if (scene && !textures && showsMasks(*scene)) return load(true);
-  return scene;
+  return engine::sceneFromGltf(scene_, options);
 }
 
 // All files, before the first is written. A failure of any is a file that cannot be written.

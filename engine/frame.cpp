@@ -4,6 +4,7 @@
 #include <chrono>
 #include <new>
 #include <stdexcept>
+#include <utility>
 
 #include "obscura/post/transfer_samples.h"
 #include "obscura/raster/float_environment.h"
@@ -124,19 +125,18 @@ Result<Done> Renderer::render(const Scene& scene, const FrameSettings& settings,
   frame.statistics = s.rasterizer.statistics();
   frame.timings.gbuffer = watch.lap();
 
-  if (frame.width != w || frame.height != h) frame.transfer = {}, frame.color = {}, frame.display = {}, s.sums = {};
   frame.width = w;
   frame.height = h;
   const post::TransferInput in{&frame.g, post::makeProjector(settings.camera, w, h), settings.transfer,
                                post::transferSamples(settings.transfer)};
   if (needs.sums) {
-    s.sums = post::makeTransferSums(in);
+    s.sums = post::makeTransferSums(in, std::move(s.sums));
     s.forRows(h, [&](int y0, int y1) {
       s.reference ? post::ambientTransferRef(in, y0, y1, s.sums) : post::ambientTransfer(in, y0, y1, s.sums, s.target);
     });
     frame.timings.transfer = watch.lap();
 
-    frame.transfer = post::makeTransfer(w, h, needs.obscurance, needs.w);
+    frame.transfer = post::makeTransfer(w, h, needs.obscurance, needs.w, std::move(frame.transfer));
     s.forRows(h, [&](int y0, int y1) {
       s.reference ? post::depthFilterRef(in, s.sums, y0, y1, frame.transfer)
                   : post::depthFilter(in, s.sums, y0, y1, frame.transfer, s.target);
@@ -144,7 +144,7 @@ Result<Done> Renderer::render(const Scene& scene, const FrameSettings& settings,
     frame.timings.filter = watch.lap();
   }
   if (needs.color) {
-    frame.color = post::makeLinearColor(w, h);
+    frame.color = post::makeLinearColor(w, h, std::move(frame.color));
     const post::LightInput li{&frame.g, &frame.transfer, settings.ambient, settings.ambientLight, settings.background};
     s.forRows(h, [&](int y0, int y1) {
       s.reference ? post::lightRef(li, y0, y1, frame.color) : post::light(li, y0, y1, frame.color, s.target);
@@ -152,7 +152,7 @@ Result<Done> Renderer::render(const Scene& scene, const FrameSettings& settings,
     frame.timings.light = watch.lap();
   }
   if (settings.display) {
-    frame.display = post::makeDisplayImage(w, h);
+    frame.display = post::makeDisplayImage(w, h, std::move(frame.display));
     s.forRows(h, [&](int y0, int y1) {
       s.reference ? post::displayRef(frame.color, s.table, y0, y1, frame.display)
                   : post::display(frame.color, s.table, y0, y1, frame.display, s.target);

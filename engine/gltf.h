@@ -24,7 +24,7 @@ struct LoadLimits {
 
 struct LoadOptions {
   int scene = -1;               // -1: the file's default scene, else its first
-  bool textures = true;         // false: materials keep their factors only (no image is decoded)
+  bool textures = true;         // false: only those that decide what is seen (of masks), else factors only
   LoadLimits limits;
 };
 

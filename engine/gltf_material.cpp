@@ -38,7 +38,11 @@ class MaterialReader {
     m.doubleSided = in.doubleSided;
     m.unlit = in.extensions.count("KHR_materials_unlit") != 0;
     readAlpha(in, path, isUsed, m);
-    if (isUsed && document_.options.textures) readTextures(in, path, m);
+    const bool all = document_.options.textures;
+    // Where a mask is transparent decides what is seen, so its texture is always needed.
+    if (isUsed && (all || m.alphaMode == raster::AlphaMode::Mask))
+      m.baseColorMap = readSlot(pbr.baseColorTexture, true, path + "/pbrMetallicRoughness/baseColorTexture");
+    if (isUsed && all) readOtherTextures(in, path, m);
     return m;
   }
 
@@ -64,11 +68,9 @@ class MaterialReader {
     }
   }
 
-  void readTextures(const tinygltf::Material& in, const std::string& path, raster::Material& m) {
-    const tinygltf::PbrMetallicRoughness& pbr = in.pbrMetallicRoughness;
-    const std::string pbrPath = path + "/pbrMetallicRoughness";
-    m.baseColorMap = readSlot(pbr.baseColorTexture, true, pbrPath + "/baseColorTexture");
-    m.metallicRoughnessMap = readSlot(pbr.metallicRoughnessTexture, false, pbrPath + "/metallicRoughnessTexture");
+  void readOtherTextures(const tinygltf::Material& in, const std::string& path, raster::Material& m) {
+    m.metallicRoughnessMap = readSlot(in.pbrMetallicRoughness.metallicRoughnessTexture, false,
+                                      path + "/pbrMetallicRoughness/metallicRoughnessTexture");
     m.normalMap = readSlot(in.normalTexture, false, path + "/normalTexture");
     m.emissiveMap = readSlot(in.emissiveTexture, true, path + "/emissiveTexture");
     needs_.tangents = m.normalMap.texture >= 0;

@@ -141,21 +141,22 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 #include "obscura/raster/dispatch.h"
+#include "obscura/raster/float_environment.h"
 
 namespace obscura::post {
 
 HWY_EXPORT(AmbientTransfer);
 
 void ambientTransfer(const TransferInput& in, int y0, int y1, TransferSums& out, raster::Target target) {
+  const raster::FloatEnvironment environment;
   OBSCURA_DISPATCH(AmbientTransfer, target)(in, y0, y1, out);
 }
 
-TransferSums makeTransferSums(const TransferInput& in) {
-  TransferSums sums;
-  sums.numerator = raster::Plane<float>(in.g->width, in.g->height);
-  if (in.settings.albedo == TransferAlbedo::Neighbour)
-    for (auto& plane : sums.denominator) plane = raster::Plane<float>(in.g->width, in.g->height);
-  return sums;
+TransferSums makeTransferSums(const TransferInput& in, TransferSums used) {
+  const bool denominators = in.settings.albedo == TransferAlbedo::Neighbour;
+  used.numerator.resize(in.g->width, in.g->height);
+  for (auto& plane : used.denominator) plane.resize(denominators ? in.g->width : 0, denominators ? in.g->height : 0);
+  return used;
 }
 
 }  // namespace obscura::post

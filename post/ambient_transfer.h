@@ -27,8 +27,9 @@ struct TransferInput {
   std::vector<glm::vec3> offsets;  // transferSamples(settings)
 };
 
-// Allocates what the settings need.
-TransferSums makeTransferSums(const TransferInput& in);
+// Allocates what the settings need. `used`, here and in the other make functions of the post process: planes of an earlier
+// frame, which serve again where they have the right size.
+TransferSums makeTransferSums(const TransferInput& in, TransferSums used = {});
 
 // Rows y0 ... y1 - 1 of `out`; reads the depth map everywhere.
 void ambientTransfer(const TransferInput& in, int y0, int y1, TransferSums& out, raster::Target target);

@@ -6,6 +6,7 @@
 
 #include "obscura/post/ambient_transfer.h"
 #include "obscura/post/sample_sets.h"
+#include "obscura/raster/float_environment.h"
 
 namespace obscura::post {
 namespace {
@@ -70,6 +71,7 @@ void shade(const TransferInput& in, int x, int y, TransferSums& out) {
 }  // namespace
 
 void ambientTransferRef(const TransferInput& in, int y0, int y1, TransferSums& out) {
+  const raster::FloatEnvironment environment;
   for (int y = y0; y < y1; ++y)
     for (int x = 0; x < in.g->width; ++x) shade(in, x, y, out);
 }

@@ -91,21 +91,21 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 #include "obscura/raster/dispatch.h"
+#include "obscura/raster/float_environment.h"
 
 namespace obscura::post {
 
 HWY_EXPORT(DepthFilter);
 
 void depthFilter(const TransferInput& in, const TransferSums& sums, int y0, int y1, Transfer& out, raster::Target target) {
+  const raster::FloatEnvironment environment;
   OBSCURA_DISPATCH(DepthFilter, target)(in, sums, y0, y1, out);
 }
 
-Transfer makeTransfer(int width, int height, bool obscurance, bool w) {
-  Transfer t;
-  if (obscurance) t.obscurance = raster::Plane<float>(width, height);
-  for (auto& plane : t.w)
-    if (w) plane = raster::Plane<float>(width, height);
-  return t;
+Transfer makeTransfer(int width, int height, bool obscurance, bool w, Transfer used) {
+  used.obscurance.resize(obscurance ? width : 0, obscurance ? height : 0);
+  for (auto& plane : used.w) plane.resize(w ? width : 0, w ? height : 0);
+  return used;
 }
 
 }  // namespace obscura::post

@@ -15,7 +15,7 @@ struct Transfer {
   raster::Plane<float> w[3];        // allocated if asked for
 };
 
-Transfer makeTransfer(int width, int height, bool obscurance, bool w);
+Transfer makeTransfer(int width, int height, bool obscurance, bool w, Transfer used = {});
 
 // Window x-2 ... x+1, y-2 ... y+1, clamped at the border. A neighbour counts if |z - z'| < threshold; the pixel itself
 // always does. Without AmbientSettings::filter only the pixel itself. Empty pixels have O = W = 1.

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "obscura/post/depth_filter.h"
+#include "obscura/raster/float_environment.h"
 
 namespace obscura::post {
 namespace {
@@ -33,6 +34,7 @@ void filterPixel(const TransferInput& in, const TransferSums& sums, int x, int y
 }  // namespace
 
 void depthFilterRef(const TransferInput& in, const TransferSums& sums, int y0, int y1, Transfer& out) {
+  const raster::FloatEnvironment environment;
   for (int y = y0; y < y1; ++y)
     for (int x = 0; x < in.g->width; ++x) filterPixel(in, sums, x, y, out);
 }

@@ -45,6 +45,7 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 #include "obscura/raster/dispatch.h"
+#include "obscura/raster/float_environment.h"
 #include "obscura/raster/srgb.h"
 
 namespace obscura::post {
@@ -52,6 +53,7 @@ namespace obscura::post {
 HWY_EXPORT(Display);
 
 DisplayTable::DisplayTable() {
+  const raster::FloatEnvironment environment;
   threshold[0] = 0;
   for (int k = 1; k < 256; ++k) threshold[k] = float(raster::linearFromSrgb((k - 0.5) / 255));
   threshold[256] = std::numeric_limits<float>::infinity();
@@ -66,10 +68,14 @@ DisplayTable::DisplayTable() {
 }
 
 void display(const LinearColor& in, const DisplayTable& table, int y0, int y1, DisplayImage& out, raster::Target target) {
+  const raster::FloatEnvironment environment;
   OBSCURA_DISPATCH(Display, target)(in, table, y0, y1, out);
 }
 
-DisplayImage makeDisplayImage(int width, int height) { return {raster::Plane<uint32_t>(width, height)}; }
+DisplayImage makeDisplayImage(int width, int height, DisplayImage used) {
+  used.rgba.resize(width, height);
+  return used;
+}
 
 }  // namespace obscura::post
 #endif

@@ -24,7 +24,7 @@ struct DisplayImage {
   raster::Plane<uint32_t> rgba;  // R in the lowest byte, A = 255
 };
 
-DisplayImage makeDisplayImage(int width, int height);
+DisplayImage makeDisplayImage(int width, int height, DisplayImage used = {});
 
 // Values are clamped to [0, 1]; NaN becomes 0.
 void display(const LinearColor& in, const DisplayTable& table, int y0, int y1, DisplayImage& out, raster::Target target);

@@ -37,19 +37,20 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 #include "obscura/raster/dispatch.h"
+#include "obscura/raster/float_environment.h"
 
 namespace obscura::post {
 
 HWY_EXPORT(Light);
 
 void light(const LightInput& in, int y0, int y1, LinearColor& out, raster::Target target) {
+  const raster::FloatEnvironment environment;
   OBSCURA_DISPATCH(Light, target)(in, y0, y1, out);
 }
 
-LinearColor makeLinearColor(int width, int height) {
-  LinearColor c;
-  for (auto& plane : c.rgb) plane = raster::Plane<float>(width, height);
-  return c;
+LinearColor makeLinearColor(int width, int height, LinearColor used) {
+  for (auto& plane : used.rgb) plane.resize(width, height);
+  return used;
 }
 
 }  // namespace obscura::post

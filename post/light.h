@@ -24,7 +24,7 @@ struct LinearColor {
   raster::Plane<float> rgb[3];
 };
 
-LinearColor makeLinearColor(int width, int height);
+LinearColor makeLinearColor(int width, int height, LinearColor used = {});
 
 void light(const LightInput& in, int y0, int y1, LinearColor& out, raster::Target target);
 void lightRef(const LightInput& in, int y0, int y1, LinearColor& out);  // the scalar twin

@@ -2,10 +2,12 @@
 #include <limits>
 
 #include "obscura/post/light.h"
+#include "obscura/raster/float_environment.h"
 
 namespace obscura::post {
 
 void lightRef(const LightInput& in, int y0, int y1, LinearColor& out) {
+  const raster::FloatEnvironment environment;
   const raster::GBuffer& g = *in.g;
   for (int c = 0; c < 3; ++c)
     for (int y = y0; y < y1; ++y)

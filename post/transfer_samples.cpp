@@ -4,6 +4,7 @@
 
 #include "obscura/post/sample_sets.h"
 #include "obscura/raster/exact_math.h"
+#include "obscura/raster/float_environment.h"
 
 namespace obscura::post {
 namespace {
@@ -35,6 +36,7 @@ double membershipOf(Membership membership, double d) {
 }
 
 std::vector<glm::vec3> transferSamples(const AmbientSettings& settings) {
+  const raster::FloatEnvironment environment;
   std::vector<glm::vec3> offsets;
   for (const glm::vec3& xi : sampleSet(settings.samples)) {
     const double angle = kTwoPi * xi.x, sine = std::sqrt(double(xi.y)), cosine = std::sqrt(1 - double(xi.y));

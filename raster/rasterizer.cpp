@@ -117,7 +117,7 @@ void Rasterizer::State::rasterTiles(const SurfaceContext& context, const TileGri
   parallel.forRanges(size_t(grid.count()), 1, [&](size_t begin, size_t end, int index) {
     Worker& worker = *workers[size_t(index)];
     for (size_t t = begin; t < end; ++t) {
-      const bool covered = rasterTile(context, grid, int(t), bins, worker.tile, target);
+      const bool covered = rasterTile(context, grid, int(t), bins, settings.skip, worker.tile, target);
       ++worker.statistics.tiles;
       worker.statistics.tilesEmpty += !covered;
       resolveTile(context, worker.tile, covered, out, target);

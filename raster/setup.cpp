@@ -134,6 +134,23 @@ HWY_INLINE Edges edgeFunctions(const View& view, const Corners& c, VI x, VI y, V
   return out;
 }
 
+// No centre of the 2 x 2 pixels from (x, y) is inside.
+HWY_INLINE MI missesFour(const Edges& e) {
+  const DI d;
+  VI best = hn::Set(d, -1);  // its sign is set as long as every pixel has had a negative edge
+  for (int corner = 0; corner < 4; ++corner) {
+    VI any = hn::Zero(d);
+    for (int i = 0; i < 3; ++i) {
+      VI value = e.e[i];
+      if (corner & 1) value = hn::Add(value, e.a[i]);
+      if (corner & 2) value = hn::Add(value, e.b[i]);
+      any = hn::Or(any, value);
+    }
+    best = hn::And(best, any);
+  }
+  return hn::Lt(best, hn::Zero(d));
+}
+
 HWY_INLINE VI doubledArea(const Corners& c) {
   return hn::Sub(hn::Mul(hn::Sub(c.x[1], c.x[0]), hn::Sub(c.y[2], c.y[0])),
                  hn::Mul(hn::Sub(c.x[2], c.x[0]), hn::Sub(c.y[1], c.y[0])));
@@ -181,7 +198,7 @@ void SetupCluster(const View& view, const Draw& draw, const Cluster& cluster, co
   statistics.facingAway += cluster.triangleCount - uint64_t(facingCount);
   for (int i = facingCount; i < facingCount + lanes && i < kList; ++i) facing[i] = 0;  // the last vector's rest
 
-  // First pass: keep what covers a pixel centre, as far as boxes and single pixels tell.
+  // First pass: keep what covers a pixel centre, as far as boxes tell, and the centres of tiny ones.
   for (int i = 0; i < facingCount; i += lanes) {
     const VI index = hn::Load(di, facing + i);
     const MI valid = hn::Lt(hn::Iota(di, i), hn::Set(di, facingCount));
@@ -210,11 +227,10 @@ void SetupCluster(const View& view, const Draw& draw, const Cluster& cluster, co
     const MI candidates = hn::AndNot(hn::Or(gone, single), valid);
     const MI turned = hn::And(candidates, wrong);
     MI keep = hn::AndNot(wrong, candidates);
-    // A box of one pixel: is its centre inside?
+    // A box of at most 2 x 2 pixels: is any centre inside?
     const Edges edges = edgeFunctions(view, c, box.x0, box.y0, area);
-    const MI onePixel = hn::And(hn::Eq(box.x0, box.x1), hn::Eq(box.y0, box.y1));
-    const MI missed = hn::Lt(hn::Or(hn::Or(edges.e[0], edges.e[1]), edges.e[2]), hn::Zero(di));
-    keep = hn::AndNot(hn::And(onePixel, missed), keep);
+    const MI tiny = hn::Not(hn::Or(hn::Gt(hn::Sub(box.x1, box.x0), hn::Set(di, 1)), hn::Gt(hn::Sub(box.y1, box.y0), hn::Set(di, 1))));
+    keep = hn::AndNot(hn::And(tiny, missesFour(edges)), keep);
     const int before = visibleCount;
     append(index, keep, visible, visibleCount);
     const uint64_t validCount = hn::CountTrue(di, valid), turnedCount = hn::CountTrue(di, turned);

@@ -14,7 +14,7 @@ namespace obscura::raster {
 //           (eye.w = 0: n . e), n the plane of Clusters. This is what lets a cluster be culled by its normal cone without changing a
 //           bit: tiny triangles may turn round when they are snapped.
 //   after:  the doubled area's sign.
-// Double-sided triangles and those of a flattened instance only need an area.
+// Double-sided triangles only need an area; of a flattened instance only the second test is made.
 void setupCluster(const View& view, const Draw& draw, const Cluster& cluster, const TransformedVertices& vertices,
                   Bins& bins, Statistics& statistics, Target target);
 

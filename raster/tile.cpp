@@ -179,16 +179,17 @@ namespace obscura::raster {
 
 HWY_EXPORT(RasterTile);
 
-bool rasterTile(const SurfaceContext& context, const TileGrid& grid, int tile, Span<const Bins> bins, TileBuffers& out,
-                Target target) {
+bool rasterTile(const SurfaceContext& context, const TileGrid& grid, int tile, Span<const Bins> bins, bool skipEmpty,
+                TileBuffers& out, Target target) {
   out.x = (tile % grid.columns) << grid.tileBits;
   out.y = (tile / grid.columns) << grid.tileBits;
   out.width = std::min(1 << grid.tileBits, grid.width - out.x);
   out.height = std::min(1 << grid.tileBits, grid.height - out.y);
   out.columns = (1 << grid.tileBits) >> kBlockBits;
-  const bool any = std::any_of(bins.begin(), bins.end(), [&](const Bins& b) { return !b.small(tile).empty() || !b.large(tile).empty(); });
-  if (any) OBSCURA_DISPATCH(RasterTile, target)(context, tile, bins, out);
-  return any;
+  const auto hasTriangles = [&](const Bins& b) { return !b.small(tile).empty() || !b.large(tile).empty(); };
+  if (skipEmpty && std::none_of(bins.begin(), bins.end(), hasTriangles)) return false;
+  OBSCURA_DISPATCH(RasterTile, target)(context, tile, bins, out);
+  return true;
 }
 
 }  // namespace obscura::raster

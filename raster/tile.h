@@ -33,9 +33,9 @@ struct TileBuffers {
 };
 
 // The winner of a pixel is the triangle with the larger key, on equal keys the one with the smaller id, so the order
-// in which triangles and bins come does not matter. Returns false, and leaves `out` unspecified but for its box, if
-// the tile has no triangles.
-bool rasterTile(const SurfaceContext& context, const TileGrid& grid, int tile, Span<const Bins> bins, TileBuffers& out,
-                Target target);
+// in which triangles and bins come does not matter. With skipEmpty, returns false and leaves `out` unspecified but for
+// its box if the tile has no triangles.
+bool rasterTile(const SurfaceContext& context, const TileGrid& grid, int tile, Span<const Bins> bins, bool skipEmpty,
+                TileBuffers& out, Target target);
 
 }  // namespace obscura::raster

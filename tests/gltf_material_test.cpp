@@ -157,6 +157,12 @@ TEST_CASE("gltf textures: only the images of drawn materials are decoded") {
   const Scene scene = load(b, options);
   CHECK(scene.textures.empty());
   CHECK(scene.materials[0].baseColorMap.texture == -1);
+  // A mask's texture decides what is seen, so it is read all the same.
+  b.json["materials"][0]["alphaMode"] = "MASK";
+  b.json["images"][0] = {{"uri", dataUri(kImage)}};
+  const Scene masked = load(b, options);
+  CHECK(masked.textures.size() == 1);
+  CHECK(masked.materials[0].baseColorMap.texture == 0);
 }
 
 TEST_CASE("gltf textures: images come from bufferViews, data URIs and files") {

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "obscura/raster/clip.h"
+#include "obscura/raster/transform.h"
+
 namespace obscura::tests {
 namespace {
 
@@ -76,6 +79,38 @@ KeyError keyError(const OracleTriangle& t, SubPoint c, float found) {
   e.error = std::fabs(double(difference) / double(area)) / double(1 << kFraction);
   e.terms = std::fabs(t.key[0]) + std::fabs(xGradient * double(c.x - t.at[0].x)) + std::fabs(yGradient * double(c.y - t.at[0].y));
   return e;
+}
+
+std::vector<OracleTriangle> snappedPieces(const raster::View& view, const raster::Draw& draw, uint32_t triangle) {
+  float p[3][3];
+  glm::vec3 inView[3], polygon[raster::kMaxClipped];
+  for (int i = 0; i < 3; ++i) {
+    const glm::vec3 v = draw.mesh->positions[draw.mesh->indices[size_t(triangle) * 3 + size_t(i)]];
+    for (int c = 0; c < 3; ++c) p[c][i] = v[c];
+    for (int r = 0; r < 3; ++r) {
+      const float* m = draw.viewFromObject[r];
+      inView[i][r] = ((m[0] * v.x + m[1] * v.y) + m[2] * v.z) + m[3];
+    }
+  }
+  raster::TransformedVertices vertices;
+  raster::transformVerticesRef(view, draw, p[0], p[1], p[2], 3, vertices);
+  std::vector<OracleTriangle> pieces;
+  if (!(vertices.anyCode & raster::kNeedsClip)) {
+    OracleTriangle& t = pieces.emplace_back();
+    for (int i = 0; i < 3; ++i) t.at[i] = {vertices.xSub[i], vertices.ySub[i]}, t.key[i] = vertices.key[i];
+    return pieces;
+  }
+  const int corners = raster::clipTriangle(view, inView, polygon);
+  for (int k = 2; k < corners; ++k) {
+    OracleTriangle& t = pieces.emplace_back();
+    const glm::vec3 points[3] = {polygon[0], polygon[k - 1], polygon[k]};
+    for (int i = 0; i < 3; ++i) {
+      int32_t x, y;
+      raster::snapVertex(view, points[i], x, y, t.key[i]);
+      t.at[i] = {x, y};
+    }
+  }
+  return pieces;
 }
 
 std::string textOf(const OracleTriangle& t) {

@@ -66,6 +66,10 @@ struct KeyError {
 };
 KeyError keyError(const OracleTriangle& t, SubPoint center, float found);
 
+// What is drawn of a triangle by definition: itself, snapped, or the fan of the polygon that clipping leaves of it.
+// Facing is left to the caller. The vertices come from the engine's own clipping and snapping.
+std::vector<OracleTriangle> snappedPieces(const raster::View& view, const raster::Draw& draw, uint32_t triangle);
+
 // "(-12, 40) key -7, ..." in sub-pixels.
 std::string textOf(const OracleTriangle& t);
 

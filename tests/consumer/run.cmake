@@ -13,7 +13,11 @@ execute_process(
     -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_PREFIX_PATH=${work}/prefix
   COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${work}/build COMMAND_ERROR_IS_FATAL ANY)
-execute_process(COMMAND ${work}/build/consumer COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${work}/build/consumer OUTPUT_FILE ${work}/picture.ppm COMMAND_ERROR_IS_FATAL ANY)
+file(SIZE ${work}/picture.ppm size)
+if(NOT size EQUAL 230415)  # a header of 15 bytes and 320 x 240 x 3
+  message(FATAL_ERROR "the picture has ${size} bytes")
+endif()
 
 execute_process(COMMAND ldd ${work}/build/consumer OUTPUT_VARIABLE libraries COMMAND_ERROR_IS_FATAL ANY)
 if(libraries MATCHES "(OpenImageIO|meshoptimizer|jpeg|png|xxhash|tinygltf|embree)")
