@@ -19,8 +19,8 @@ struct Sums {
   VF numerator, denominator[3], count;
 };
 
-// Channels of the denominator that are summed: 3 for the neighbours' W, else 0.
-template <int kChannels>
+// kChannels of the denominator are summed: 3 for the neighbours' W, else 0. kInside: no lane's window leaves the row.
+template <int kChannels, bool kInside>
 HWY_INLINE Sums sumWindow(const TransferInput& in, const TransferSums& sums, int x, int y) {
   const DF d;
   const DI di;
@@ -28,14 +28,14 @@ HWY_INLINE Sums sumWindow(const TransferInput& in, const TransferSums& sums, int
   const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f), threshold = hn::Set(d, in.settings.filterThreshold);
   const VF z = hn::LoadU(d, g.depth.row(y) + x);
   Sums s{zero, {zero, zero, zero}, zero};
-  const bool inside = x >= 2 && x + int(hn::Lanes(d)) < g.width;
   for (int j = -2; j <= 1; ++j) {
     const int row = std::clamp(y + j, 0, g.height - 1);
     for (int i = -2; i <= 1; ++i) {
       VI column = hn::Zero(di);
-      if (!inside) column = hn::Min(hn::Max(hn::Iota(di, x + i), hn::Zero(di)), hn::Set(di, g.width - 1));
+      if (!kInside) column = hn::Min(hn::Max(hn::Iota(di, x + i), hn::Zero(di)), hn::Set(di, g.width - 1));
       auto read = [&](const raster::Plane<float>& p) HWY_ATTR {
-        return inside ? hn::LoadU(d, p.row(row) + x + i) : hn::GatherIndex(d, p.row(row), column);
+        if (kInside) return hn::LoadU(d, p.row(row) + x + i);
+        return hn::GatherIndex(d, p.row(row), column);
       };
       MF counts = hn::Lt(hn::Abs(hn::Sub(z, read(g.depth))), threshold);
       if (i == 0 && j == 0) counts = hn::Eq(zero, zero);
@@ -56,9 +56,15 @@ void filterRow(const TransferInput& in, const TransferSums& sums, int y, Transfe
   const bool w = !out.w[0].empty();
   for (int x = 0; x < g.width; x += int(hn::Lanes(d))) {
     const MF seen = hn::Lt(hn::LoadU(d, g.depth.row(y) + x), hn::Set(d, std::numeric_limits<float>::infinity()));
+    if (hn::AllFalse(d, seen)) {
+      if (!out.obscurance.empty()) hn::StoreU(one, d, out.obscurance.row(y) + x);
+      for (int c = 0; w && c < 3; ++c) hn::StoreU(one, d, out.w[c].row(y) + x);
+      continue;
+    }
     Sums s;
     if (in.settings.filter) {
-      s = sumWindow<kChannels>(in, sums, x, y);
+      const bool inside = x >= 2 && x + int(hn::Lanes(d)) < g.width;
+      s = inside ? sumWindow<kChannels, true>(in, sums, x, y) : sumWindow<kChannels, false>(in, sums, x, y);
     } else {
       s.numerator = hn::LoadU(d, sums.numerator.row(y) + x);
       s.count = one;

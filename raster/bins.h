@@ -1,9 +1,15 @@
 // The lists between setup and the tiles: which triangles each tile has to look at.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <new>
+#include <utility>
 #include <vector>
 
+#include "obscura/raster/span.h"
 #include "obscura/raster/triangle.h"
 
 namespace obscura::raster {
@@ -19,24 +25,65 @@ struct TileGrid {
   int count() const { return columns * rows; }
 };
 
+// Grows like a vector, but what it appends is not initialised: records are written once, in their place.
+class RecordList {
+ public:
+  SmallTriangle& append() {
+    if (size_ == capacity_) grow();
+    return data_.get()[size_++];
+  }
+  void clear() { size_ = 0; }
+  Span<const SmallTriangle> view() const { return {data_.get(), size_}; }
+
+ private:
+  struct Free {
+    void operator()(SmallTriangle* p) const { std::free(p); }
+  };
+  void grow() {
+    const size_t capacity = capacity_ ? capacity_ * 2 : 32;
+    std::unique_ptr<SmallTriangle, Free> data(
+        static_cast<SmallTriangle*>(std::aligned_alloc(alignof(SmallTriangle), capacity * sizeof(SmallTriangle))));
+    if (!data) throw std::bad_alloc();
+    std::copy_n(data_.get(), size_, data.get());
+    data_ = std::move(data);
+    capacity_ = capacity;
+  }
+  std::unique_ptr<SmallTriangle, Free> data_;
+  size_t size_ = 0, capacity_ = 0;
+};
+
 // What one worker found. Each worker fills its own; a tile reads them all. Capacity survives clear(), so that a
 // renderer that is used again allocates nothing.
 class Bins {
  public:
   void reset(const TileGrid& grid) {
     grid_ = grid;
+    single_.resize(size_t(grid.count()));
     small_.resize(size_t(grid.count()));
     large_.resize(size_t(grid.count()));
+    for (auto& list : single_) list.clear();
     for (auto& list : small_) list.clear();
     for (auto& list : large_) list.clear();
     triangles_.clear();
   }
 
-  void add(const SmallTriangle& t) {
+  // A place for a small triangle, in a list of its first tile; to be filled, and then handed to spread().
+  SmallTriangle& add(int32_t block, int32_t blocks) {
     const int bits = grid_.tileBits - kBlockBits;
-    const int c0 = t.x >> bits, c1 = (t.x + t.columns - 1) >> bits, r0 = t.y >> bits, r1 = (t.y + t.rows - 1) >> bits;
+    const size_t tile = size_t(upperHalf(block) >> bits) * size_t(grid_.columns) + size_t(lowerHalf(block) >> bits);
+    return (blocks == 0 ? single_ : small_)[tile].append();
+  }
+
+  // Copies it to the other tiles that it touches, if any.
+  void spread(const SmallTriangle& t) {
+    if (t.blocks == 0) return;
+    const int bits = grid_.tileBits - kBlockBits, x = lowerHalf(t.block), y = upperHalf(t.block);
+    const int c0 = x >> bits, c1 = (x + lowerHalf(t.blocks)) >> bits, r0 = y >> bits, r1 = (y + upperHalf(t.blocks)) >> bits;
+    if (c0 == c1 && r0 == r1) return;
+    const SmallTriangle copy = t;
     for (int r = r0; r <= r1; ++r)
-      for (int c = c0; c <= c1; ++c) small_[size_t(r) * size_t(grid_.columns) + size_t(c)].push_back(t);
+      for (int c = c0; c <= c1; ++c)
+        if (r != r0 || c != c0) small_[size_t(r) * size_t(grid_.columns) + size_t(c)].append() = copy;
   }
 
   void add(const LargeTriangle& t) {
@@ -48,7 +95,11 @@ class Bins {
         if (mayCover(t, c, r)) large_[size_t(r) * size_t(grid_.columns) + size_t(c)].push_back(index);
   }
 
-  const std::vector<SmallTriangle>& small(int tile) const { return small_[size_t(tile)]; }
+  // Those that touch one block, and the others: two lists, as the first kind is the commonest and needs neither loops
+  // nor clipping to the tile.
+  Span<const SmallTriangle> single(int tile) const { return single_[size_t(tile)].view(); }
+  Span<const SmallTriangle> small(int tile) const { return small_[size_t(tile)].view(); }
+  bool empty(int tile) const { return single(tile).empty() && small(tile).empty() && large(tile).empty(); }
   const std::vector<uint32_t>& large(int tile) const { return large_[size_t(tile)]; }
   const LargeTriangle& triangle(uint32_t index) const { return triangles_[index]; }
 
@@ -64,7 +115,7 @@ class Bins {
   }
 
   TileGrid grid_;
-  std::vector<std::vector<SmallTriangle>> small_;
+  std::vector<RecordList> single_, small_;
   std::vector<std::vector<uint32_t>> large_;  // into triangles_
   std::vector<LargeTriangle> triangles_;
 };

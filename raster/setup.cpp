@@ -158,9 +158,9 @@ HWY_INLINE VI doubledArea(const Corners& c) {
 
 // What is needed of up to a vector of surviving triangles to write their records.
 struct Survivors {
-  HWY_ALIGN int32_t e[3][16], a[2][16], b[2][16], x[16], y[16], columns[16], rows[16], xFromP0[16], yFromP0[16];
-  HWY_ALIGN int32_t dx1[16], dy1[16], dx2[16], dy2[16], area[16], triangle[16];
-  HWY_ALIGN float key0[16], key1[16], key2[16], keyMin[16], keyMax[16], xGradient[16], yGradient[16];
+  HWY_ALIGN int32_t e[3][16], a[16], b[16], block[16], blocks[16], triangle[16];
+  HWY_ALIGN int32_t dx1[16], dy1[16], dx2[16], dy2[16], area[16];
+  HWY_ALIGN float key0[16], key1[16], key2[16], keyMin[16], keyMax[16], xGradient[16], yGradient[16], xFromP0[16], yFromP0[16];
 };
 
 // Depth gradients, in double: the products of a 24-bit key and a 15-bit extent are exact there.
@@ -253,19 +253,18 @@ void SetupCluster(const View& view, const Draw& draw, const Cluster& cluster, co
     const Edges edges = edgeFunctions(view, c, x, y, area);
     const VF key0 = hn::GatherIndex(d, vertices.key, c.i[0]), key1 = hn::GatherIndex(d, vertices.key, c.i[1]);
     const VF key2 = hn::GatherIndex(d, vertices.key, c.i[2]);
+    auto pair = [&](VI lower, VI upper) HWY_ATTR {
+      return hn::Or(hn::And(lower, hn::Set(di, 0xFFFF)), hn::ShiftLeft<16>(upper));
+    };
     for (int k = 0; k < 3; ++k) hn::Store(edges.e[k], di, s.e[k]);
-    for (int k = 0; k < 2; ++k) {
-      hn::Store(edges.a[k], di, s.a[k]);
-      hn::Store(edges.b[k], di, s.b[k]);
-    }
-    hn::Store(bx, di, s.x);
-    hn::Store(by, di, s.y);
-    hn::Store(hn::Sub(hn::ShiftRight<kBlockBits>(box.x1), bx), di, s.columns);
-    hn::Store(hn::Sub(hn::ShiftRight<kBlockBits>(box.y1), by), di, s.rows);
+    hn::Store(pair(edges.a[0], edges.a[1]), di, s.a);
+    hn::Store(pair(edges.b[0], edges.b[1]), di, s.b);
+    hn::Store(pair(bx, by), di, s.block);
+    hn::Store(pair(hn::Sub(hn::ShiftRight<kBlockBits>(box.x1), bx), hn::Sub(hn::ShiftRight<kBlockBits>(box.y1), by)), di, s.blocks);
     const VI cx = hn::Add(hn::ShiftLeft<kSubBits>(x), hn::Set(di, kSub / 2 - view.xHalfSub));
     const VI cy = hn::Add(hn::ShiftLeft<kSubBits>(y), hn::Set(di, kSub / 2 - view.yHalfSub));
-    hn::Store(hn::Sub(cx, c.x[0]), di, s.xFromP0);
-    hn::Store(hn::Sub(cy, c.y[0]), di, s.yFromP0);
+    hn::Store(hn::ConvertTo(d, hn::Sub(cx, c.x[0])), d, s.xFromP0);
+    hn::Store(hn::ConvertTo(d, hn::Sub(cy, c.y[0])), d, s.yFromP0);
     hn::Store(hn::Sub(c.x[1], c.x[0]), di, s.dx1);
     hn::Store(hn::Sub(c.y[1], c.y[0]), di, s.dy1);
     hn::Store(hn::Sub(c.x[2], c.x[0]), di, s.dx2);
@@ -279,23 +278,22 @@ void SetupCluster(const View& view, const Draw& draw, const Cluster& cluster, co
     hn::Store(hn::GatherIndex(di, reinterpret_cast<const int32_t*>(triangles), index), di, s.triangle);
     depthGradients(s, count);
     for (int k = 0; k < count; ++k) {
-      SmallTriangle t;
+      SmallTriangle& t = bins.add(s.block[k], s.blocks[k]);
       for (int n = 0; n < 3; ++n) t.e[n] = s.e[n][k];
-      for (int n = 0; n < 2; ++n) t.a[n] = int16_t(s.a[n][k]), t.b[n] = int16_t(s.b[n][k]);
-      t.x = int16_t(s.x[k]);
-      t.y = int16_t(s.y[k]);
-      t.columns = uint8_t(s.columns[k] + 1);
-      t.rows = uint8_t(s.rows[k] + 1);
-      t.masked = masked;
+      t.a = s.a[k];
+      t.b = s.b[k];
+      t.block = s.block[k];
+      t.blocks = s.blocks[k];
       t.key0 = s.key0[k];
       t.xGradient = s.xGradient[k];
       t.yGradient = s.yGradient[k];
-      t.xFromP0 = float(s.xFromP0[k]);
-      t.yFromP0 = float(s.yFromP0[k]);
+      t.xFromP0 = s.xFromP0[k];
+      t.yFromP0 = s.yFromP0[k];
       t.keyMin = s.keyMin[k];
       t.keyMax = s.keyMax[k];
       t.id = draw.firstTriangle + uint32_t(s.triangle[k]);
-      bins.add(t);
+      t.masked = masked;
+      bins.spread(t);
     }
   }
   statistics.drawn += uint64_t(visibleCount);

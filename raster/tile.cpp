@@ -118,16 +118,28 @@ HWY_INLINE void fill(const SurfaceContext& context, const Blocks& t, TileBuffers
   }
 }
 
+// All within one block.
+HWY_INLINE void rasterSingle(const SurfaceContext& context, const SmallTriangle& t, TileBuffers& out) {
+  const int a0 = lowerHalf(t.a), a1 = upperHalf(t.a), b0 = lowerHalf(t.b), b1 = upperHalf(t.b);
+  const Blocks c{{t.e[0], t.e[1], t.e[2]}, {a0, a1, -a0 - a1}, {b0, b1, -b0 - b1}, lowerHalf(t.block) - (out.x >> kBlockBits),
+       upperHalf(t.block) - (out.y >> kBlockBits), 1, 1, t.key0, t.xGradient, t.yGradient, t.keyMin, t.keyMax, t.xFromP0, t.yFromP0, t.id};
+  for (int first = 0; first < kBlock * kBlock; first += int(hn::Lanes(DF()))) {
+    const PixelVector v = pixelVector(c, first);
+    if (HWY_UNLIKELY(t.masked)) fillBlock<true>(context, c, v, 0, 0, out);
+    else fillBlock<false>(context, c, v, 0, 0, out);
+  }
+}
+
 HWY_INLINE void rasterSmall(const SurfaceContext& context, const SmallTriangle& t, TileBuffers& out) {
   Blocks c;
-  const int x = t.x - (out.x >> kBlockBits), y = t.y - (out.y >> kBlockBits);
+  const int x = lowerHalf(t.block) - (out.x >> kBlockBits), y = upperHalf(t.block) - (out.y >> kBlockBits);
   c.x = std::max(x, 0);
   c.y = std::max(y, 0);
-  c.columns = std::min(x + t.columns, out.columns) - c.x;
-  c.rows = std::min(y + t.rows, (out.height + kBlock - 1) >> kBlockBits) - c.y;
+  c.columns = std::min(x + lowerHalf(t.blocks) + 1, out.columns) - c.x;
+  c.rows = std::min(y + upperHalf(t.blocks) + 1, (out.height + kBlock - 1) >> kBlockBits) - c.y;
   const int dx = (c.x - x) * kBlock, dy = (c.y - y) * kBlock;
-  c.a[0] = t.a[0], c.a[1] = t.a[1], c.a[2] = -t.a[0] - t.a[1];
-  c.b[0] = t.b[0], c.b[1] = t.b[1], c.b[2] = -t.b[0] - t.b[1];
+  c.a[0] = lowerHalf(t.a), c.a[1] = upperHalf(t.a), c.a[2] = -c.a[0] - c.a[1];
+  c.b[0] = lowerHalf(t.b), c.b[1] = upperHalf(t.b), c.b[2] = -c.b[0] - c.b[1];
   for (int i = 0; i < 3; ++i) c.e[i] = t.e[i] + c.a[i] * dx + c.b[i] * dy;
   c.key0 = t.key0, c.xGradient = t.xGradient, c.yGradient = t.yGradient, c.keyMin = t.keyMin, c.keyMax = t.keyMax;
   c.xFromP0 = t.xFromP0 + float(dx * kSub);
@@ -165,6 +177,7 @@ void RasterTile(const SurfaceContext& context, int tile, Span<const Bins> bins, 
   for (const Bins& b : bins) {
     for (uint32_t index : b.large(tile)) rasterLarge(context, b.triangle(index), out);
     for (const SmallTriangle& t : b.small(tile)) rasterSmall(context, t, out);
+    for (const SmallTriangle& t : b.single(tile)) rasterSingle(context, t, out);
   }
 }
 
@@ -186,8 +199,7 @@ bool rasterTile(const SurfaceContext& context, const TileGrid& grid, int tile, S
   out.width = std::min(1 << grid.tileBits, grid.width - out.x);
   out.height = std::min(1 << grid.tileBits, grid.height - out.y);
   out.columns = (1 << grid.tileBits) >> kBlockBits;
-  const auto hasTriangles = [&](const Bins& b) { return !b.small(tile).empty() || !b.large(tile).empty(); };
-  if (skipEmpty && std::none_of(bins.begin(), bins.end(), hasTriangles)) return false;
+  if (skipEmpty && std::all_of(bins.begin(), bins.end(), [&](const Bins& b) { return b.empty(tile); })) return false;
   OBSCURA_DISPATCH(RasterTile, target)(context, tile, bins, out);
   return true;
 }

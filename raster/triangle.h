@@ -26,17 +26,21 @@ constexpr int kBlockBits = 2, kBlock = 1 << kBlockBits;
 static_assert(int64_t(2) * kSmallExtentSub * (kSmallExtentSub + kBlock * kSub) < (int64_t(1) << 31));
 
 struct alignas(64) SmallTriangle {
-  int32_t e[3];             // at the centre of the upper left pixel of block (x, y)
-  int16_t a[2], b[2];       // edges 0 and 1; those of edge 2 make the sums zero
-  int16_t x, y;             // first blocks that the covered centres' box touches, inside the image
-  uint8_t columns, rows;    // how many of them
-  uint8_t masked;           // alpha decides per pixel
+  int32_t e[3];     // at the centre of the upper left pixel of block (x, y)
+  int32_t a, b;     // two of 16 bits, edge 0 lower and edge 1 upper; those of edge 2 make the sums zero
+  int32_t block;    // x lower, y upper: first block that the covered centres' box touches, inside the image
+  int32_t blocks;   // columns lower, rows upper: how many blocks it touches, less one
   float key0, xGradient, yGradient;  // gradients per sub-pixel
   float xFromP0, yFromP0;            // centre of that pixel minus p0, sub-pixels, exact
   float keyMin, keyMax;
   uint32_t id;
+  uint32_t masked;  // alpha decides per pixel
 };
 static_assert(sizeof(SmallTriangle) == 64, "one cache line");
+
+// Halves of a packed pair, sign extended.
+inline int lowerHalf(int32_t pair) { return int16_t(pair & 0xFFFF); }
+inline int upperHalf(int32_t pair) { return pair >> 16; }
 
 // Coordinates within the guard band: |A|, |B| <= 2^22, so |E| <= 2 * 2^22 * 2^22 = 2^45 fits in 64 bits.
 static_assert(int64_t(2) * (2ll * kGuardSub) * (2ll * kGuardSub) <= (int64_t(1) << 45));
