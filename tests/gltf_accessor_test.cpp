@@ -17,7 +17,7 @@ namespace {
 const std::vector<float> kTriangle = {0, 0, 0, 1, 0, 0, 0, 1, 0};
 
 Scene load(const GltfBuilder& b) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   auto scene = sceneFromGltf(b.writeGlb(folder));
   INFO((scene ? std::string("loaded") : scene.error().text()));
   REQUIRE(scene.ok());
@@ -25,7 +25,7 @@ Scene load(const GltfBuilder& b) {
 }
 
 std::string pathOfError(const GltfBuilder& b) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto scene = sceneFromGltf(b.writeGlb(folder));
   return scene ? "loaded" : scene.error().gltfPath;
 }

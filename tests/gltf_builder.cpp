@@ -61,17 +61,6 @@ void appendGlbChunk(std::vector<uint8_t>& glb, uint32_t type, std::vector<uint8_
 
 }  // namespace
 
-TempFolder::TempFolder() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "obscura-test-XXXXXX").string();
-  if (!mkdtemp(pattern.data())) throw std::runtime_error("no temporary folder");
-  path_ = pattern;
-}
-
-TempFolder::~TempFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
-
 void writeBytes(const std::string& path, const std::vector<uint8_t>& bytes) {
   std::ofstream out(path, std::ios::binary);
   out.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
@@ -167,15 +156,15 @@ std::string GltfBuilder::gltf(const std::string& bufferUri) const {
   return whole({{"byteLength", binary.size()}, {"uri", bufferUri}}).dump();
 }
 
-std::string GltfBuilder::writeGlb(const TempFolder& folder, const std::string& name) const {
-  writeBytes(folder.file(name), glb());
-  return folder.file(name);
+std::string GltfBuilder::writeGlb(const TemporaryFolder& folder, const std::string& name) const {
+  writeBytes(folder / name, glb());
+  return folder / name;
 }
 
-std::string GltfBuilder::writeGltf(const TempFolder& folder, const std::string& name) const {
+std::string GltfBuilder::writeGltf(const TemporaryFolder& folder, const std::string& name) const {
   const std::string text = gltf(dataUri(binary));
-  writeBytes(folder.file(name), {text.begin(), text.end()});
-  return folder.file(name);
+  writeBytes(folder / name, {text.begin(), text.end()});
+  return folder / name;
 }
 
 size_t GltfBuilder::componentsOf(const std::string& type) {

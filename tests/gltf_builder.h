@@ -8,20 +8,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "obscura/tests/temporary_folder.h"
+
 namespace obscura::tests {
-
-// A folder of its own, removed with all that is in it.
-class TempFolder {
- public:
-  TempFolder();
-  ~TempFolder();
-  TempFolder(const TempFolder&) = delete;
-  TempFolder& operator=(const TempFolder&) = delete;
-  std::string file(const std::string& name) const { return path_ + "/" + name; }
-
- private:
-  std::string path_;
-};
 
 void writeBytes(const std::string& path, const std::vector<uint8_t>& bytes);
 std::string dataUri(const std::vector<uint8_t>& bytes);  // data:application/octet-stream;base64,...
@@ -66,8 +55,8 @@ class GltfBuilder {
 
   std::vector<uint8_t> glb() const;
   std::string gltf(const std::string& bufferUri) const;  // the text of a .gltf
-  std::string writeGlb(const TempFolder& folder, const std::string& name = "scene.glb") const;  // returns the path
-  std::string writeGltf(const TempFolder& folder, const std::string& name = "scene.gltf") const;  // buffer as data URI
+  std::string writeGlb(const TemporaryFolder& folder, const std::string& name = "scene.glb") const;  // returns the path
+  std::string writeGltf(const TemporaryFolder& folder, const std::string& name = "scene.gltf") const;  // buffer as data URI
 
   static size_t componentsOf(const std::string& type);  // of "SCALAR", "VEC2", ..., "MAT4"
 

@@ -22,9 +22,9 @@ GltfBuilder triangle() {
   return b;
 }
 
-std::string writeText(const TempFolder& folder, const std::string& text, const std::string& name = "scene.gltf") {
-  writeBytes(folder.file(name), {text.begin(), text.end()});
-  return folder.file(name);
+std::string writeText(const TemporaryFolder& folder, const std::string& text, const std::string& name = "scene.gltf") {
+  writeBytes(folder / name, {text.begin(), text.end()});
+  return folder / name;
 }
 
 Error errorOf(const std::string& path, const LoadOptions& options = {}) {
@@ -37,7 +37,7 @@ Error errorOf(const std::string& path, const LoadOptions& options = {}) {
 }
 
 std::string pathOfError(const GltfBuilder& b, const LoadOptions& options = {}) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto scene = sceneFromGltf(b.writeGlb(folder), options);
   return scene ? "loaded" : scene.error().gltfPath;
 }
@@ -45,9 +45,9 @@ std::string pathOfError(const GltfBuilder& b, const LoadOptions& options = {}) {
 }  // namespace
 
 TEST_CASE("gltf files: a .glb, a data URI and an external buffer give the same scene") {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const GltfBuilder b = triangle();
-  writeBytes(folder.file("a b.bin"), b.binary);
+  writeBytes(folder / "a b.bin", b.binary);
   for (const std::string& path : {b.writeGlb(folder), b.writeGltf(folder), writeText(folder, b.gltf("a%20b.bin"), "c"),
                                   b.writeGlb(folder, "named.gltf"), b.writeGltf(folder, "named.glb")}) {
     const auto scene = sceneFromGltf(path);
@@ -61,7 +61,7 @@ TEST_CASE("gltf files: base64 of every length comes back") {
   for (size_t n = 36; n < 40; ++n) {
     GltfBuilder b = triangle();
     b.binary.resize(n, 0x5A);
-    const TempFolder folder;
+    const TemporaryFolder folder;
     CHECK(sceneFromGltf(b.writeGltf(folder)).ok());
     b.json["bufferViews"][0]["byteLength"] = n + 1;
     CHECK(errorOf(b.writeGltf(folder)).gltfPath == "/bufferViews/0");
@@ -71,7 +71,7 @@ TEST_CASE("gltf files: base64 of every length comes back") {
   std::vector<float> values;
   for (int i = 0; i < 256 * 3; ++i) values.push_back(float(i * 7919 % 65521) / 3);  // every digit occurs
   all.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = all.addFloats(values, "VEC3");
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto text = sceneFromGltf(all.writeGltf(folder)), binary = sceneFromGltf(all.writeGlb(folder));
   REQUIRE(text.ok());
   REQUIRE(binary.ok());
@@ -79,11 +79,11 @@ TEST_CASE("gltf files: base64 of every length comes back") {
 }
 
 TEST_CASE("gltf files: bad base64, unknown schemes and paths out of the folder are refused") {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const GltfBuilder b = triangle();
-  std::filesystem::create_directory(folder.file("inner"));
-  writeBytes(folder.file("outside.bin"), b.binary);
-  writeBytes(folder.file("inner/inside.bin"), b.binary);
+  std::filesystem::create_directory(folder / "inner");
+  writeBytes(folder / "outside.bin", b.binary);
+  writeBytes(folder / "inner/inside.bin", b.binary);
   const auto load = [&](const std::string& uri) {
     return sceneFromGltf(writeText(folder, b.gltf(uri), "inner/s.gltf"));
   };
@@ -92,7 +92,7 @@ TEST_CASE("gltf files: bad base64, unknown schemes and paths out of the folder a
   CHECK(load("./x/../inside.bin").ok() == false);  // lexically inside, but there is no x
   for (const std::string& uri :
        {std::string("../outside.bin"), std::string("%2e%2e/outside.bin"), std::string("x/../../outside.bin"),
-        folder.file("outside.bin"), "file://" + folder.file("outside.bin"), std::string("http://example.com/x.bin"),
+        (folder / "outside.bin"), "file://" + (folder / "outside.bin"), std::string("http://example.com/x.bin"),
         std::string(""), std::string("a%00b"), std::string("a%2"), std::string("."), std::string("nowhere.bin"),
         std::string("data:,abc"), std::string("data:;base64"), std::string("data:;base64,") + std::string(49, 'A'),
         std::string("data:;base64,") + std::string(47, 'A') + "*", "data:;base64,*" + std::string(47, 'A'),
@@ -105,9 +105,9 @@ TEST_CASE("gltf files: bad base64, unknown schemes and paths out of the folder a
 }
 
 TEST_CASE("gltf files: what is missing, empty, a folder or not glTF is one clear error") {
-  const TempFolder folder;
-  CHECK(errorOf(folder.file("absent.glb")).text() == folder.file("absent.glb") + ": no such file");
-  CHECK(errorOf(folder.file("")).message == "not a regular file");
+  const TemporaryFolder folder;
+  CHECK(errorOf(folder / "absent.glb").text() == (folder / "absent.glb") + ": no such file");
+  CHECK(errorOf(folder / "").message == "not a regular file");
   for (const char* text : {"", "{", "[]", "null", "{}", "glTF", "{\"asset\": 1}", "{\"asset\": {}}", "\xff\xfe",
                            "{\"asset\": {\"version\": \"1.0\"}}", "{\"asset\": {\"version\": \"2.0\"}, \"nodes\": 1}",
                            "{\"asset\": {\"version\": \"2.0\"}, \"nodes\": [1]}", "{\"a\": 1e999}"}) {
@@ -117,7 +117,7 @@ TEST_CASE("gltf files: what is missing, empty, a folder or not glTF is one clear
 }
 
 TEST_CASE("gltf files: a scene without triangles is an error") {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   CHECK(errorOf(GltfBuilder().writeGlb(folder)).message == "the scene has no triangles");
   GltfBuilder b = triangle();
   b.json["meshes"][0]["primitives"][0]["mode"] = 1;
@@ -128,31 +128,31 @@ TEST_CASE("gltf files: a scene without triangles is an error") {
 }
 
 TEST_CASE("gltf files: a .glb cut anywhere is an error") {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const std::vector<uint8_t> whole = triangle().glb();
   for (size_t n = 0; n < whole.size(); ++n) {
-    writeBytes(folder.file("cut.glb"), {whole.begin(), whole.begin() + std::ptrdiff_t(n)});
-    REQUIRE(!sceneFromGltf(folder.file("cut.glb")).ok());
+    writeBytes(folder / "cut.glb", {whole.begin(), whole.begin() + std::ptrdiff_t(n)});
+    REQUIRE(!sceneFromGltf(folder / "cut.glb").ok());
   }
 }
 
 TEST_CASE("gltf files: a header that lies about lengths is an error") {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   for (const size_t at : {size_t(8), size_t(12)})  // the file's length, the JSON chunk's
     for (const uint32_t value : {0u, 1u, 13u, 0x7FFFFFFFu, 0xFFFFFFFFu}) {
       std::vector<uint8_t> glb = triangle().glb();
       for (size_t k = 0; k < 4; ++k) glb[at + k] = uint8_t(value >> (8 * k));
-      writeBytes(folder.file("lie.glb"), glb);
-      errorOf(folder.file("lie.glb"));
+      writeBytes(folder / "lie.glb", glb);
+      errorOf(folder / "lie.glb");
     }
   std::vector<uint8_t> glb = triangle().glb();
   glb[glb.size() - triangle().binary.size() - 8] += 4;  // the binary chunk's length
-  writeBytes(folder.file("lie.glb"), glb);
-  errorOf(folder.file("lie.glb"));
+  writeBytes(folder / "lie.glb", glb);
+  errorOf(folder / "lie.glb");
 }
 
 TEST_CASE("gltf files: nesting that would exhaust the stack is refused") {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const std::string deep(1000000, '[');
   CHECK(errorOf(writeText(folder, deep)).message == "JSON nested deeper than 256 levels");
   const std::string text = "{\"asset\": {\"version\": \"2.0\"}, \"extras\": " + std::string(1000, '[') +
@@ -196,7 +196,7 @@ TEST_CASE("gltf files: a required extension that is not supported is an error, a
   b.json["extensionsUsed"] = {"KHR_mesh_quantization", "KHR_draco_mesh_compression", "VENDOR_x", "VENDOR_x"};
   b.json["nodes"][0]["extensions"]["VENDOR_undeclared"] = {{"deep", {1, 2, 3}}};
   b.json["extensionsRequired"] = {"KHR_mesh_quantization", "KHR_lights_punctual"};
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto scene = sceneFromGltf(b.writeGlb(folder));
   REQUIRE(scene.ok());
   CHECK((*scene).warnings == std::vector<std::string>{"the extension KHR_draco_mesh_compression is ignored",
@@ -229,6 +229,6 @@ TEST_CASE("gltf files: limits on files, triangles and memory hold") {
 TEST_CASE("gltf files: control characters of a hostile file do not reach a message") {
   GltfBuilder b = triangle();
   b.json["extensionsRequired"] = {"A\x1b[31m\nB"};
-  const TempFolder folder;
+  const TemporaryFolder folder;
   CHECK(errorOf(b.writeGlb(folder)).message == "the required extension A?[31m?B is not supported");
 }

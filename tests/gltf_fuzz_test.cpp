@@ -80,7 +80,7 @@ void checkSound(const Scene& scene) {
 }  // namespace
 
 TEST_CASE("gltf fuzz: a damaged file is a sound scene or an error") {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const GltfBuilder b = sample();
   const std::string text = b.gltf(dataUri(b.binary));
   const std::vector<uint8_t> files[] = {b.glb(), {text.begin(), text.end()}};
@@ -89,12 +89,12 @@ TEST_CASE("gltf fuzz: a damaged file is a sound scene or an error") {
   options.limits.zeroElements = 10000;
   int loaded = 0, refused = 0;
   for (const auto& file : files) {
-    writeBytes(folder.file("damaged"), file);
-    REQUIRE(sceneFromGltf(folder.file("damaged"), options).ok());
+    writeBytes(folder / "damaged", file);
+    REQUIRE(sceneFromGltf(folder / "damaged", options).ok());
     for (int i = 0; i < 300; ++i) {
       options.textures = i % 2 == 0;
-      writeBytes(folder.file("damaged"), damaged(file, random));
-      const auto scene = sceneFromGltf(folder.file("damaged"), options);
+      writeBytes(folder / "damaged", damaged(file, random));
+      const auto scene = sceneFromGltf(folder / "damaged", options);
       if (scene) checkSound(*scene);
       else REQUIRE(!scene.error().message.empty());
       ++(scene ? loaded : refused);

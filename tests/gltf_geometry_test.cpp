@@ -16,7 +16,7 @@ namespace {
 enum Mode { kPoints = 0, kLines = 1, kTriangles = 4, kStrip = 5, kFan = 6 };
 
 Scene load(const GltfBuilder& b) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   auto scene = sceneFromGltf(b.writeGlb(folder));
   INFO((scene ? std::string("loaded") : scene.error().text()));
   REQUIRE(scene.ok());
@@ -24,7 +24,7 @@ Scene load(const GltfBuilder& b) {
 }
 
 std::string pathOfError(const GltfBuilder& b) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto scene = sceneFromGltf(b.writeGlb(folder));
   return scene ? "loaded" : scene.error().gltfPath;
 }
@@ -67,7 +67,7 @@ TEST_CASE("gltf geometry: indices of 8, 16 and 32 bits say the same") {
 TEST_CASE("gltf geometry: an index out of range is an error with the primitive's path") {
   GltfBuilder b;
   b.addTriangle({{"indices", b.addAccessor<uint16_t>({0, 1, 3}, kUShort, "SCALAR")}});
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto scene = sceneFromGltf(b.writeGlb(folder));
   REQUIRE(!scene.ok());
   CHECK(scene.error().gltfPath == "/meshes/0/primitives/0/indices");

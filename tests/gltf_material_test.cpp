@@ -21,7 +21,7 @@ namespace {
 const std::vector<uint8_t> kImage = pngOf({0xFF0000FF, 0xFF00FF00, 0xFFFF0000, 0x80FFFFFF}, 2, 2);
 
 Scene load(const GltfBuilder& b, const LoadOptions& options = {}) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   auto scene = sceneFromGltf(b.writeGlb(folder), options);
   INFO((scene ? std::string("loaded") : scene.error().text()));
   REQUIRE(scene.ok());
@@ -29,7 +29,7 @@ Scene load(const GltfBuilder& b, const LoadOptions& options = {}) {
 }
 
 std::string pathOfError(const GltfBuilder& b, const LoadOptions& options = {}) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto scene = sceneFromGltf(b.writeGlb(folder), options);
   return scene ? "loaded" : scene.error().gltfPath;
 }
@@ -166,8 +166,8 @@ TEST_CASE("gltf textures: only the images of drawn materials are decoded") {
 }
 
 TEST_CASE("gltf textures: images come from bufferViews, data URIs and files") {
-  const TempFolder folder;
-  writeBytes(folder.file("my image.png"), kImage);
+  const TemporaryFolder folder;
+  writeBytes(folder / "my image.png", kImage);
   for (const std::string& uri : {std::string("my%20image.png"), std::string("./my image.png"), dataUri(kImage)}) {
     GltfBuilder b = drawnWith(baseTexture({{"index", 0}}));
     b.add("textures", {{"source", b.add("images", {{"uri", uri}})}});
@@ -180,7 +180,7 @@ TEST_CASE("gltf textures: images come from bufferViews, data URIs and files") {
   const auto scene = sceneFromGltf(b.writeGlb(folder));
   REQUIRE(!scene.ok());
   CHECK(scene.error().gltfPath == "/images/0");
-  CHECK(scene.error().file == folder.file("absent.png"));
+  CHECK(scene.error().file == folder / "absent.png");
 }
 
 TEST_CASE("gltf textures: the limits on sides and bytes hold") {

@@ -15,7 +15,7 @@ using Json = GltfBuilder::Json;
 namespace {
 
 Scene load(const GltfBuilder& b, const LoadOptions& options = {}) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   auto scene = sceneFromGltf(b.writeGlb(folder), options);
   INFO((scene ? std::string("loaded") : scene.error().text()));
   REQUIRE(scene.ok());
@@ -23,7 +23,7 @@ Scene load(const GltfBuilder& b, const LoadOptions& options = {}) {
 }
 
 std::string pathOfError(const GltfBuilder& b, const LoadOptions& options = {}) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto scene = sceneFromGltf(b.writeGlb(folder), options);
   return scene ? "loaded" : scene.error().gltfPath;
 }
@@ -122,7 +122,7 @@ TEST_CASE("gltf nodes: only the chosen scene is loaded") {
   options.scene = 0;
   CHECK(pathOfError(b, options) == "/accessors/0");
   options.scene = 2;
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto scene = sceneFromGltf(b.writeGlb(folder), options);
   REQUIRE(!scene.ok());
   CHECK(scene.error().code == obscura::engine::ErrorCode::Usage);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 
 struct TemporaryFolder {
@@ -11,13 +12,14 @@ struct TemporaryFolder {
 
   TemporaryFolder() {
     std::string pattern = (std::filesystem::temp_directory_path() / "obscura-test-XXXXXX").string();
-    path = mkdtemp(pattern.data()) ? pattern : std::string();
+    if (!mkdtemp(pattern.data())) throw std::runtime_error("no temporary folder");
+    path = pattern;
   }
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
   ~TemporaryFolder() {
     std::error_code ignored;
-    if (!path.empty()) std::filesystem::remove_all(path, ignored);
+    std::filesystem::remove_all(path, ignored);
   }
   std::string operator/(const std::string& name) const { return path + "/" + name; }
   size_t files() const {
