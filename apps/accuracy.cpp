@@ -53,12 +53,15 @@ void addTriangle(Workload& w, Random& random, const glm::dvec3 (&corners)[3]) {
 // `count` triangles of about `size`, relative to the distance `near` ... `far` they lie at; as thin as `thickness`.
 void addSoup(Workload& w, int count, double size, double near, double far, double thickness = 1) {
   Random random(uint64_t(count) * 977 + uint64_t(w.width));
+  const double ratio = far / near * (far / near);
   for (int t = 0; t < count; ++t) {
-    const double d = near * std::sqrt(std::sqrt(1 + random.in(0, 1) * (std::pow(far / near, 4) - 1)));
+    // More far than near, so that the near ones do not hide all others.
+    const double d = near * std::sqrt(std::sqrt(1 + random.in(0, 1) * (ratio * ratio - 1)));
     const double x = random.in(-0.7, 0.7), y = random.in(-0.5, 0.5);
     const glm::dvec3 center = glm::dvec3(x, y, -1) * d;
     const glm::dvec3 a = random.direction(), b = random.direction();
-    addTriangle(w, random, {center + a * (size * d), center - a * (size * d * 0.9), center + b * (size * d * thickness)});
+    addTriangle(w, random,
+                {center + a * (size * d), center - a * (size * d * 0.9), center + b * (size * d * thickness)});
   }
 }
 
@@ -77,7 +80,9 @@ std::vector<Workload> makeWorkloads(int scale) {
   addSoup(add("slivers", 400, 300, 0.1, 0), 4000 * scale, 0.3, 1, 10, 0.01);
   addSoup(add("clipped", 400, 300, 0.5, 6), 300 * scale, 40, 1, 10);
   addSoup(add("far / near 10^7", 400, 300, 0.001, 10000), 2000 * scale, 0.1, 0.002, 9000);
-  addSoup(add("16384 wide", 16384, 64, 0.1, 0), 3000 * scale, 0.002, 1, 10);
+  Workload& wide = add("16384 wide", 16384, 64, 0.1, 0);
+  wide.camera = raster::perspective(0.0055, 256, 0.1);
+  addSoup(wide, 6000 * scale, 0.02, 1, 10);
   Workload& away = add("10^6 away, mm", 400, 300, 0.001, 0);
   addSoup(away, 20000 * scale, 0.01, 0.1, 0.5);
   const glm::dvec3 offset(1e6 + 0.3, -1e6 + 0.7, 1e6);
@@ -166,6 +171,7 @@ class Measure {
     maxUlp_ = std::max(maxUlp_, ulps), sumUlp_ += ulps * ulps;
     max_ = std::max(max_, units), sum_ += units * units;
   }
+  uint64_t pixels() const { return pixels_; }
   AccuracyRow row(const char* workload, const char* quantity, const char* unit) const {
     const Real n = Real(std::max<uint64_t>(1, pixels_));
     return {workload, quantity, unit, pixels_, double(maxUlp_), double(std::sqrt(sumUlp_ / n)), double(max_),
@@ -235,13 +241,14 @@ void measure(Workload& w, const raster::TextureView& ramp, std::vector<AccuracyR
       const Real vError = std::fabs(Real(textured.albedo[1].at(x, y)) - (v * kRamp - 0.5L) / 255);
       texture.add(std::max(uError, vError) / kUlpOfOne, std::max(uError, vError));
 
-      const Point n = trueNormal(w, triangle, t), seen{colored.normal[0].at(x, y), colored.normal[1].at(x, y), colored.normal[2].at(x, y)};
+      const Point n = trueNormal(w, triangle, t),
+                  seen{colored.normal[0].at(x, y), colored.normal[1].at(x, y), colored.normal[2].at(x, y)};
       // Raster turns normals of what is seen from behind; which side is seen is not what is measured here.
       const Real sign = n.x * seen.x + n.y * seen.y + n.z * seen.z < 0 ? -1 : 1;
       const Point off = seen * sign + n * -1;
       normal.add(std::max({std::fabs(off.x), std::fabs(off.y), std::fabs(off.z)}) / kUlpOfOne, length(off));
     }
-  rows.push_back(depth.row(w.name, "depth", "scene units"));
+  if (depth.pixels() > 0) rows.push_back(depth.row(w.name, "depth", "scene units"));
   rows.push_back(surface.row(w.name, "surface", "scene units"));
   rows.push_back(weights.row(w.name, "weights", "scene units"));
   rows.push_back(texture.row(w.name, "texture", "albedo"));

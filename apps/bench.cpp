@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "obscura/apps/bench_accuracy.h"
 #include "obscura/apps/bench_frame.h"
 
 int main(int argc, char** argv) {
@@ -11,6 +12,8 @@ int main(int argc, char** argv) {
   int status = 0;
   obscura::apps::FrameBenchmark frame;
   frame.addTo(app, status);
+  obscura::apps::AccuracyBenchmark accuracy;
+  accuracy.addTo(app, status);
   CLI11_PARSE(app, argc, argv);
   return status;
 }

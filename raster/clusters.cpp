@@ -4,6 +4,7 @@
 #include <array>
 #include <cfloat>
 #include <cmath>
+#include <limits>
 
 namespace obscura::raster {
 namespace {
@@ -22,6 +23,13 @@ uint32_t padded(uint32_t n) { return (n + kPad - 1) / kPad * kPad; }
 
 bool finite(const glm::vec3& p) { return p.x - p.x == 0 && p.y - p.y == 0 && p.z - p.z == 0; }
 
+struct Vec {
+  double x = 0, y = 0, z = 0;
+};
+Vec vec(const glm::vec3& v) { return {v.x, v.y, v.z}; }
+Vec operator-(Vec a, Vec b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+double dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
 // The cluster that is being filled, in arrays of fixed size.
 struct Builder {
   uint32_t vertexCount = 0, triangleCount = 0;
@@ -29,15 +37,8 @@ struct Builder {
   std::array<glm::vec3, Clusters::kMaxVertices> position;
   std::array<uint32_t, Clusters::kMaxTriangles> triangle;
   std::array<uint32_t, Clusters::kMaxTriangles> corners;
-  std::array<glm::vec3, Clusters::kMaxTriangles> normal;
+  std::array<Vec, Clusters::kMaxTriangles> normal;  // exact but for double's rounding
 };
-
-struct Vec {
-  double x = 0, y = 0, z = 0;
-};
-Vec vec(const glm::vec3& v) { return {v.x, v.y, v.z}; }
-Vec operator-(Vec a, Vec b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-double dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 // The largest squared distance of a finite vertex from `center`, and which vertex that is.
 double farthest(const Builder& b, Vec center, uint32_t* which) {
@@ -93,8 +94,8 @@ void boundNormals(const Builder& b, Cluster& c) {
   uint32_t count = 0;
   Vec sum;
   for (uint32_t t = 0; t < b.triangleCount; ++t) {
-    const Vec n = vec(b.normal[t]);
-    const double square = dot(n, n);  // of floats: neither overflows nor, unless n is 0, vanishes
+    const Vec n = b.normal[t];
+    const double square = dot(n, n);  // products of floats' products: neither overflows nor, unless n is 0, vanishes
     if (square == 0) continue;
     const double scale = 1 / std::sqrt(square);
     unit[count] = {n.x * scale, n.y * scale, n.z * scale};
@@ -111,6 +112,9 @@ void boundNormals(const Builder& b, Cluster& c) {
   c.coneAxis = axis;
   c.coneCos = float(least);
 }
+
+// Planes shorter than this are not used: products with them could underflow.
+constexpr double kSmallestPlane = 1e-18;
 
 // Appends the builder's cluster to `out`, with planes, padding and bounds.
 void flush(Builder& b, Clusters& out) {
@@ -138,9 +142,13 @@ void flush(Builder& b, Clusters& out) {
     out.triangle[at] = b.triangle[t];
     const uint32_t corners = out.corners[at] = b.corners[t];
     const glm::vec3 v0 = b.position[corners & 255];
-    const glm::vec3 e1 = b.position[corners >> 8 & 255] - v0, e2 = b.position[corners >> 16] - v0;
-    const glm::vec3 n(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x);
-    b.normal[t] = n;
+    const Vec e1 = vec(b.position[corners >> 8 & 255]) - vec(v0), e2 = vec(b.position[corners >> 16]) - vec(v0);
+    const Vec exact{e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x};
+    b.normal[t] = exact;
+    // Where float would lose bits to underflow, no plane at all: every such triangle is decided exactly.
+    const double size = std::max({std::fabs(exact.x), std::fabs(exact.y), std::fabs(exact.z)});
+    const float unknown = std::numeric_limits<float>::quiet_NaN();
+    const glm::vec3 n = size > 0 && size < kSmallestPlane ? glm::vec3(unknown) : glm::vec3(float(exact.x), float(exact.y), float(exact.z));
     out.planeX[at] = n.x;
     out.planeY[at] = n.y;
     out.planeZ[at] = n.z;

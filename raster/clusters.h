@@ -30,8 +30,8 @@ struct Clusters {
   std::vector<uint32_t> corners;                 // cluster-local vertices, one byte each, corner 0 lowest; padded
   std::vector<uint32_t> triangle;                // number of the triangle in the mesh; padding repeats the first,
                                                  // its corners and its plane are 0
-  // Facing: n = (v1 - v0) x (v2 - v0) and dot(n, v0 - center), both as float arithmetic gives them
-  // (NaN and infinite where that overflows or a vertex is not finite).
+  // Facing: n = (v1 - v0) x (v2 - v0), rounded to float from double, and dot(n, v0 - center) in float. Infinite where that
+  // overflows, NaN where a vertex is not finite or n is so short that products with it could underflow.
   std::vector<float> planeX, planeY, planeZ, planeW;
   uint32_t triangleCount = 0;
   glm::vec3 center{0};  // sphere around all clusters' spheres

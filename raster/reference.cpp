@@ -73,9 +73,9 @@ void drawSnapped(const SurfaceContext& context, const Draw& draw, uint32_t trian
 
 bool seenFromOutside(const Draw& draw, const glm::vec3 o[3]) {
   if (draw.material->doubleSided || !draw.invertible) return true;
-  const glm::vec3 a = o[1] - o[0], b = o[2] - o[0], eye(draw.eye[0], draw.eye[1], draw.eye[2]);
-  const glm::vec3 n(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
-  const glm::vec3 toEye = draw.eye[3] > 0 ? eye - o[0] : eye;
+  const glm::dvec3 first(o[0]), a = glm::dvec3(o[1]) - first, b = glm::dvec3(o[2]) - first, eye(draw.eye[0], draw.eye[1], draw.eye[2]);
+  const glm::dvec3 n(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+  const glm::dvec3 toEye = draw.eye[3] > 0 ? eye - first : eye;
   return n.x * toEye.x + n.y * toEye.y + n.z * toEye.z > 0;
 }
 

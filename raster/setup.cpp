@@ -43,7 +43,9 @@ int facingTriangles(const Draw& draw, const Cluster& cluster, int32_t* list) {
     distance += std::fabs(toEye[c]);
   }
   const VF w = hn::Set(d, draw.eye[3]);
-  const VF slack = hn::Set(d, (distance + cluster.radius * draw.eye[3]) * (1.0f / (1 << 20)));
+  const float reach = distance + cluster.radius * draw.eye[3];
+  // Below 1e-12 products with a plane of 1e-18 come near to underflow: everything is decided exactly.
+  const VF slack = hn::Set(d, reach > 1e-12f ? reach * (1.0f / (1 << 20)) : HUGE_VALF);
   const VF ex = hn::Set(d, toEye[0]), ey = hn::Set(d, toEye[1]), ez = hn::Set(d, toEye[2]);
   for (int t = 0; t < triangles; t += lanes) {
     const size_t at = cluster.firstTriangle + size_t(t);
@@ -55,8 +57,8 @@ int facingTriangles(const Draw& draw, const Cluster& cluster, int32_t* list) {
     const MI front = hn::And(hn::RebindMask(di, hn::Gt(side, error)), inside);
     const MI back = hn::RebindMask(di, hn::Lt(side, hn::Neg(error)));
     append(hn::Iota(di, t), front, list, count);
-    const MI someArea = hn::RebindMask(di, hn::Gt(error, hn::Zero(d)));  // without it n is 0 and faces nothing
-    const MI unsure = hn::AndNot(hn::Or(front, back), hn::And(someArea, inside));
+    const MI noArea = hn::RebindMask(di, hn::Eq(error, hn::Zero(d)));  // n is 0 and faces nothing
+    const MI unsure = hn::AndNot(hn::Or(hn::Or(front, back), noArea), inside);
     if (HWY_UNLIKELY(!hn::AllFalse(di, unsure))) {
       HWY_ALIGN int32_t which[16 + 16];
       int n = 0;

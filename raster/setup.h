@@ -10,9 +10,10 @@
 namespace obscura::raster {
 
 // A single-sided triangle is seen if it faces the eye before *and* after snapping:
-//   before: n . eye - (n . v0) eye.w > 0, as ((n.x (e.x - v0.x) + n.y (e.y - v0.y)) + n.z (e.z - v0.z)) in float
-//           (eye.w = 0: n . e), n the plane of Clusters. This is what lets a cluster be culled by its normal cone without changing a
-//           bit: tiny triangles may turn round when they are snapped.
+//   before: n . eye - (n . v0) eye.w > 0, as ((n.x (e.x - v0.x) + n.y (e.y - v0.y)) + n.z (e.z - v0.z)) in double
+//           (eye.w = 0: n . e), n = (v1 - v0) x (v2 - v0) in double: float could not tell a needle's side, and a plane of
+//           needles would have holes. This is what lets a cluster be culled by its normal cone without changing a bit:
+//           tiny triangles may turn round when they are snapped.
 //   after:  the doubled area's sign.
 // Double-sided triangles only need an area; of a flattened instance only the second test is made.
 void setupCluster(const View& view, const Draw& draw, const Cluster& cluster, const TransformedVertices& vertices,

@@ -22,12 +22,11 @@ glm::vec3 viewPosition(const Draw& draw, const glm::vec3& p) {
 }  // namespace
 
 bool facesEye(const Draw& draw, uint32_t triangle) {
-  glm::vec3 v[3];
-  corners(draw, triangle, v);
-  const glm::vec3 e1 = v[1] - v[0], e2 = v[2] - v[0];
-  const glm::vec3 n(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x);
-  const float* e = draw.eye;
-  const glm::vec3 d = e[3] > 0 ? glm::vec3(e[0] - v[0].x, e[1] - v[0].y, e[2] - v[0].z) : glm::vec3(e[0], e[1], e[2]);
+  glm::vec3 corner[3];
+  corners(draw, triangle, corner);
+  const glm::dvec3 v0(corner[0]), e1 = glm::dvec3(corner[1]) - v0, e2 = glm::dvec3(corner[2]) - v0;
+  const glm::dvec3 n(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x);
+  const glm::dvec3 eye(draw.eye[0], draw.eye[1], draw.eye[2]), d = draw.eye[3] > 0 ? eye - v0 : eye;
   return (n.x * d.x + n.y * d.y) + n.z * d.z > 0;
 }
 

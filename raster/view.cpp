@@ -45,7 +45,7 @@ View makeView(const Camera& camera, int width, int height) {
   v.xShiftSub = camera.xShift * float(v.xHalfSub);
   v.yShiftSub = -(camera.yShift * float(v.yHalfSub));
   v.zNear = camera.zNear;
-  v.zFar = camera.zFar > 0 ? camera.zFar : std::numeric_limits<float>::infinity();
+  v.zFar = camera.zFar > 0 ? camera.zFar : std::numeric_limits<float>::max();
   return v;
 }
 

@@ -28,7 +28,7 @@ struct View {
   bool perspective = true;
   // xSub = xView / zView * xScaleSub + xShiftSub  (orthographic: without the division); y points down.
   float xScaleSub = 0, yScaleSub = 0, xShiftSub = 0, yShiftSub = 0;
-  float zNear = 0, zFar = 0;                      // zFar is infinite where the camera has none
+  float zNear = 0, zFar = 0;                      // zFar is the largest float where the camera has none: infinity lies beyond
   int32_t xHalfSub = 0, yHalfSub = 0;             // half the image: pixel (0, 0) begins at (-xHalfSub, -yHalfSub)
 
   // Centre of a pixel, relative to the centre of the image.

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -152,12 +153,17 @@ void requireSound(const Soup& s, const Clusters& c) {
         v[i] = vertex(corner);
         for (int a = 0; a < 3; ++a) badCorners += !sameBits(v[i][a], s.positions[s.indices[c.triangle[t] * 3 + i]][a]);
       }
-      const glm::vec3 e = v[1] - v[0], f = v[2] - v[0];
-      const float nx = e.y * f.z - e.z * f.y, ny = e.z * f.x - e.x * f.z, nz = e.x * f.y - e.y * f.x;
+      const glm::dvec3 e = glm::dvec3(v[1]) - glm::dvec3(v[0]), f = glm::dvec3(v[2]) - glm::dvec3(v[0]);
+      const glm::dvec3 exact(e.y * f.z - e.z * f.y, e.z * f.x - e.x * f.z, e.x * f.y - e.y * f.x);
+      const double size = std::max({std::fabs(exact.x), std::fabs(exact.y), std::fabs(exact.z)});
+      const bool unknown = size > 0 && size < 1e-18;  // too short for float: no plane
+      const float nan = std::numeric_limits<float>::quiet_NaN();
+      const float nx = unknown ? nan : float(exact.x), ny = unknown ? nan : float(exact.y), nz = unknown ? nan : float(exact.z);
       const glm::vec3 r = v[0] - k.center;
       const float w = nx * r.x + ny * r.y + nz * r.z;
-      badPlanes += !sameBits(n.x, nx) || !sameBits(n.y, ny) || !sameBits(n.z, nz) || !sameBits(c.planeW[t], w);
-      if (k.coneCos == -1) continue;
+      auto same = [](float a, float b) { return sameBits(a, b) || (a != a && b != b); };
+      badPlanes += !same(n.x, nx) || !same(n.y, ny) || !same(n.z, nz) || !same(c.planeW[t], w);
+      if (k.coneCos == -1 || unknown) continue;
       long double along = 0, square = 0;
       for (int a = 0; a < 3; ++a) along += (long double)n[a] * k.coneAxis[a], square += (long double)n[a] * n[a];
       badCones += !(along >= (k.coneCos + 1e-5L) * std::sqrt(square));  // the margin is there

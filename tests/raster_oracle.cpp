@@ -77,7 +77,8 @@ KeyError keyError(const OracleTriangle& t, SubPoint c, float found) {
   const double xGradient = (k1 * y2 - k2 * y1) / double(area), yGradient = (k2 * x1 - k1 * x2) / double(area);
   KeyError e;
   e.error = std::fabs(double(difference) / double(area)) / double(1 << kFraction);
-  e.terms = std::fabs(t.key[0]) + std::fabs(xGradient * double(c.x - t.at[0].x)) + std::fabs(yGradient * double(c.y - t.at[0].y));
+  e.terms = std::fabs(t.key[0]) + std::fabs(xGradient * double(c.x - t.at[0].x)) +
+            std::fabs(yGradient * double(c.y - t.at[0].y));
   return e;
 }
 

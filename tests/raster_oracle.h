@@ -41,8 +41,12 @@ struct OracleTriangle {
 // The centres of an image's pixels.
 struct OracleImage {
   int width = 0, height = 0;
-  int64_t xCenter(int x) const { return int64_t(x) * raster::kSub + raster::kSub / 2 - int64_t(width) * raster::kSub / 2; }
-  int64_t yCenter(int y) const { return int64_t(y) * raster::kSub + raster::kSub / 2 - int64_t(height) * raster::kSub / 2; }
+  int64_t xCenter(int x) const {
+    return int64_t(x) * raster::kSub + raster::kSub / 2 - int64_t(width) * raster::kSub / 2;
+  }
+  int64_t yCenter(int y) const {
+    return int64_t(y) * raster::kSub + raster::kSub / 2 - int64_t(height) * raster::kSub / 2;
+  }
 };
 
 struct Columns {
@@ -55,7 +59,7 @@ Columns coveredColumns(const OracleTriangle& t, const OracleImage& image, int ro
 // The same question about any closed polygon: the centre is inside if an odd number of crossings lie at or left of it.
 bool insidePolygon(const std::vector<SubPoint>& polygon, SubPoint center);
 
-// Smallest distance of `center` from the three edges' segments is below `distance` sub-pixels (in double: for margins only).
+// An edge, as a segment, is nearer to `center` than `distance` sub-pixels. In double: for margins only.
 bool nearAnEdge(const OracleTriangle& t, SubPoint center, double distance);
 
 // Keys are integers, 1 <= |key| < 2^24, and coordinates within the guard band, so that everything is an integer below

@@ -156,18 +156,22 @@ std::string checkKey(const OracleTriangle& t, SubPoint center, float key) {
   const auto range = std::minmax({t.key[0], t.key[1], t.key[2]});
   const KeyError e = keyError(t, center, key);
   if (key >= range.first && key <= range.second && e.error <= 4 * kHalfUlp * e.terms) return "";
-  return "key " + std::to_string(key) + " errs by " + std::to_string(e.error) + ", bound " + std::to_string(4 * kHalfUlp * e.terms);
+  return "key " + std::to_string(key) + " errs by " + std::to_string(e.error) + ", bound " +
+         std::to_string(4 * kHalfUlp * e.terms);
 }
 
-// Empty, or the first pixel of the box [x0, x1) x [y0, y1) in which the frame is not what the oracle says of triangle `id`.
-std::string checkBox(const GBuffer& g, const OracleTriangle& t, uint32_t id, bool seen, int x0, int y0, int x1, int y1) {
+// Empty, or the first pixel of the box [x0, x1) x [y0, y1) in which the frame is not what the oracle says of triangle
+// `id`.
+std::string checkBox(const GBuffer& g, const OracleTriangle& t, uint32_t id, bool seen, int x0, int y0, int x1,
+                     int y1) {
   const OracleImage image{g.width, g.height};
   const auto at = [&](int x, int y) { return "pixel (" + std::to_string(x) + ", " + std::to_string(y) + "): "; };
   for (int y = y0; y < y1; ++y) {
     const Columns c = seen ? coveredColumns(t, image, y) : Columns{};
     for (int x = x0; x < x1; ++x) {
       const uint32_t expected = x >= c.begin && x < c.end ? id : kNoTriangle, found = g.triangle.at(x, y);
-      if (found != expected) return at(x, y) + "triangle " + std::to_string(found) + ", expected " + std::to_string(expected);
+      if (found != expected)
+        return at(x, y) + "triangle " + std::to_string(found) + ", expected " + std::to_string(expected);
     }
     if (c.begin == c.end) continue;
     for (int x : {c.begin, c.end - 1}) {  // the key is linear: it errs most at the ends
@@ -203,8 +207,8 @@ void runBatch(const Kind& kind, int frame, uint64_t& triangles) {
     if (!wrong.empty())
       FAIL(wrong << "\ntriangle " << k << ": " << textOf(t) << " sub-pixels from the centre of " << kind.size << " x "
                  << kind.size << ", " << (b.singleSided ? "single" : "double") << "-sided, target "
-                 << targetName(settings.target) << ", tile " << settings.tile << "\nrepeat with OBSCURA_ORACLE=" << kind.name
-                 << ":" << frame);
+                 << targetName(settings.target) << ", tile " << settings.tile
+                 << "\nrepeat with OBSCURA_ORACLE=" << kind.name << ":" << frame);
   }
   triangles += b.triangles.size();
 }
@@ -228,7 +232,8 @@ TEST_CASE("oracle: a million random triangles, alone in their cells, agree with 
   for (const Kind& kind : kKinds) {
     const std::string prefix = std::string(kind.name) + ":";
     if (!wanted.empty() && wanted[0] != 'x') {
-      if (wanted.compare(0, prefix.size(), prefix) == 0) runBatch(kind, std::atoi(wanted.c_str() + prefix.size()), triangles);
+      if (wanted.compare(0, prefix.size(), prefix) == 0)
+        runBatch(kind, std::atoi(wanted.c_str() + prefix.size()), triangles);
       continue;
     }
     const int frames = kFastBuild ? kind.framesOfMillion * times : std::max(2, kind.framesOfMillion / 50);
@@ -270,7 +275,8 @@ TEST_CASE("oracle: triangles of up to a thousand images' size agree with exact a
       m.positions.push_back({float(t.at[i].x) / kSub, -float(t.at[i].y) / kSub, t.key[i]});
     }
     s.place(m);
-    rasterizers[size_t(round % 6)].render(s.list(), pixelCamera(size[0], size[1]), size[0], size[1], depthAndTriangle(), g);
+    rasterizers[size_t(round % 6)].render(s.list(), pixelCamera(size[0], size[1]), size[0], size[1], depthAndTriangle(),
+                                          g);
     INFO("round " << round << ", " << size[0] << " x " << size[1] << " pixels: " << textOf(t));
     REQUIRE(checkBox(g, t, 0, true, 0, 0, size[0], size[1]) == "");
     for (int y = 0; y < size[1]; ++y) covered += coveredColumns(t, image, y).end - coveredColumns(t, image, y).begin;

@@ -1,0 +1,229 @@
+// obscura-bench on tiny sizes: what it prints is complete, and its own scenes are what they claim to be.
+#define OBSCURA_PROGRAM OBSCURA_BIN_DIR "/obscura-bench"
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <map>
+#include <new>
+#include <set>
+#include <thread>
+#include <tuple>
+
+#include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
+
+#include "obscura/apps/bench_measure.h"
+#include "obscura/apps/bench_scenes.h"
+#include "obscura/raster/rasterizer.h"
+#include "obscura/raster/target.h"
+#include "run_program.h"
+
+using namespace obscura;
+using Json = nlohmann::json;
+
+namespace {
+
+// What the program prints with --json.
+Json printed(std::vector<std::string> words) {
+  words.push_back("--json");
+  const Finished f = runProgram(words);
+  INFO(f.err);
+  REQUIRE(f.code == 0);
+  Json out = Json::parse(f.out, nullptr, false);
+  REQUIRE(out.is_object());
+  return out;
+}
+
+size_t count(const std::string& text, const std::string& part) {
+  size_t n = 0;
+  for (size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++n;
+  return n;
+}
+
+}  // namespace
+
+TEST_CASE("bench: a grid's triangles turn one way and cover its area exactly once") {
+  for (const int cell : {1, 2, 3, 16}) {
+    const apps::BenchScene scene = apps::makeGrid(70, 45, cell, raster::Projection::Orthographic);
+    double least = 1e30, sum = 0;
+    glm::dvec2 lo(1e30), hi(-1e30);
+    for (const engine::Mesh& mesh : scene.meshes)
+      for (size_t t = 0; t < mesh.indices.size(); t += 3) {
+        glm::dvec2 p[3];
+        for (size_t k = 0; k < 3; ++k) {
+          p[k] = glm::dvec2(mesh.positions[mesh.indices[t + k]]);
+          REQUIRE(p[k] * 256.0 == glm::floor(p[k] * 256.0));
+          lo = glm::min(lo, p[k]);
+          hi = glm::max(hi, p[k]);
+        }
+        const glm::dvec2 e = p[1] - p[0], f = p[2] - p[0];
+        least = std::min(least, e.x * f.y - f.x * e.y);
+        sum += e.x * f.y - f.x * e.y;
+      }
+    INFO("cell " << cell);
+    CHECK((lo.x <= -35 && lo.y <= -22.5 && hi.x >= 35 && hi.y >= 22.5));
+    CHECK(least > 0.25 * cell * cell);
+    CHECK(sum == 2 * (hi.x - lo.x) * (hi.y - lo.y));  // whole numbers of 1 / 65536: exact
+    CHECK(scene.triangles >= 2 * size_t(70 / cell) * size_t(45 / cell));
+  }
+}
+
+TEST_CASE("bench: a ball is closed and its outside is outside") {
+  const engine::Mesh ball = apps::makeBall(1000);
+  CHECK(ball.indices.size() / 3 == 12 * 9 * 9);
+  double volume = 0;
+  std::map<std::tuple<float, float, float>, int> numbers;
+  std::map<std::pair<int, int>, int> edges;  // times there less times back
+  for (size_t t = 0; t < ball.indices.size(); t += 3) {
+    int v[3];
+    glm::dvec3 p[3];
+    for (size_t k = 0; k < 3; ++k) {
+      const glm::vec3& at = ball.positions[ball.indices[t + k]];
+      v[k] = numbers.try_emplace({at.x, at.y, at.z}, int(numbers.size())).first->second;
+      p[k] = glm::dvec3(at);
+    }
+    for (int k = 0; k < 3; ++k) {
+      const int a = v[k], b = v[(k + 1) % 3];
+      edges[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
+    }
+    volume += glm::dot(p[0], glm::cross(p[1], p[2])) / 6;
+  }
+  CHECK((volume > 3 && volume < 6));
+  for (const auto& [edge, sum] : edges) REQUIRE(sum == 0);
+}
+
+TEST_CASE("bench: copies of a mesh draw the image that its instances draw") {
+  const apps::BenchScene instances = apps::makeField(600000, false, 1.5), copies = apps::makeField(600000, true, 1.5);
+  CHECK((instances.meshes.size() == 1 && copies.meshes.size() == 3));
+  CHECK(instances.triangles == copies.triangles);
+  raster::PlaneSet planes;
+  planes.depth = true;
+  raster::GBuffer a, b;
+  raster::Rasterizer rasterizer;
+  rasterizer.render(instances.list(), instances.camera, 60, 40, planes, a);
+  rasterizer.render(copies.list(), copies.camera, 60, 40, planes, b);
+  int seen = 0;
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 60; ++x) {
+      REQUIRE(a.depth.at(x, y) == b.depth.at(x, y));
+      seen += a.depth.at(x, y) < 100;
+    }
+  CHECK(seen > 600);
+}
+
+TEST_CASE("bench: a value that changes in any plane changes the digest") {
+  raster::PlaneSet planes;
+  planes.depth = planes.normal = planes.albedo = planes.triangle = true;
+  raster::GBuffer g(5, 3, planes);
+  const auto clear = [](auto& plane) {
+    for (int y = 0; y < 3; ++y) std::fill_n(plane.row(y), 5, 0);
+  };
+  std::vector<raster::Plane<float>*> floats = {&g.depth};
+  for (int c = 0; c < 3; ++c) floats.insert(floats.end(), {&g.normal[c], &g.albedo[c]});
+  for (auto* plane : floats) clear(*plane);
+  clear(g.triangle);
+  std::set<std::string> digests = {apps::digestOf(g, planes)};
+  for (auto* plane : floats) {
+    plane->at(4, 2) = 1;
+    digests.insert(apps::digestOf(g, planes));
+    plane->at(4, 2) = 0;
+  }
+  g.triangle.at(0, 0) = 1;
+  digests.insert(apps::digestOf(g, planes));
+  CHECK(digests.size() == 9);
+}
+
+TEST_CASE("bench: pixels that differ end with exit code 1, what is impossible with 3") {
+  CHECK(apps::guarded([] { return 4; }) == 4);
+  CHECK(apps::guarded([]() -> int { throw apps::Differs("as the test wants it"); }) == 1);
+  CHECK(apps::guarded([]() -> int { throw std::bad_alloc(); }) == 3);
+}
+
+TEST_CASE("bench: raster measures every cell size by every instruction set, all with the reference's digest") {
+  for (const char* projection : {"perspective", "orthographic"}) {
+    const Json out = printed({"raster", "--width", "70", "--height", "45", "--frames", "2", "--cell", "1,3,64",
+                              "--threads", "2", "--projection", projection});
+    CHECK(out["size"] == Json({70, 45}));
+    CHECK(out["threads"] == 2);
+    std::map<int, std::set<std::string>> targets, digests;
+    for (const Json& cell : out["cells"]) {
+      targets[cell["cell"]].insert(cell["target"]);
+      digests[cell["cell"]].insert(cell["digest"]);
+      CHECK(cell["equals_reference"] == true);
+      CHECK(cell["frames"] == 2);
+      for (const char* figure : {"mtri_per_s", "ns_per_triangle", "ns_per_pixel", "frame_ms"}) CHECK(cell[figure] > 0);
+      CHECK(cell["frame_ms_p10"] <= cell["frame_ms"]);
+      CHECK(cell["frame_ms"] <= cell["frame_ms_p90"]);
+    }
+    std::set<std::string> all;
+    for (const raster::Target t : raster::supportedTargets()) all.insert(raster::targetName(t));
+    CHECK(out["cells"].size() == 3 * all.size());
+    for (const int cell : {1, 3, 64}) {
+      CHECK(targets[cell] == all);
+      CHECK(digests[cell].size() == 1);
+    }
+  }
+}
+
+TEST_CASE("bench: raster prints one row a cell size, and only the target asked for") {
+  const Finished f = runProgram({"raster", "--width", "64", "--height", "32", "--frames", "1", "--cell", "2,4",
+                                 "--target", "scalar"});
+  CHECK(f.code == 0);
+  CHECK(count(f.out, "Mtri/s") == 1);
+  CHECK(count(f.out, " = reference\n") == 2);
+  CHECK(f.err.empty());
+}
+
+TEST_CASE("bench: scaling sweeps triangles, pixels and threads, and one scene has one digest") {
+  const TemporaryFolder folder;
+  const Json out = printed({"scaling", "--most-triangles", "3e5", "--most-pixels", "250x170", "--size", "64x48",
+                            "--seconds", "0.001", "--plot", folder / "plot.svg"});
+  const Json& triangles = out["triangles"];
+  REQUIRE(triangles.size() == 5);  // 10^3, 10^4, 10^5, 3 10^5, and the last without instances
+  CHECK(triangles[4]["unique"] == true);
+  CHECK(triangles[4]["triangles"] == triangles[3]["triangles"]);
+  CHECK(triangles[4]["digest"] == triangles[3]["digest"]);
+  CHECK(triangles[0]["digest"] != triangles[1]["digest"]);
+  for (size_t k = 0; k < 4; ++k) {
+    const double asked = k == 0 ? 1e3 : k == 1 ? 1e4 : k == 2 ? 1e5 : 4e5;
+    CHECK(double(triangles[k]["triangles"]) == Approx(asked).epsilon(0.05));
+  }
+  REQUIRE(out["pixels"].size() == 2);
+  CHECK(out["pixels"][0]["size"] == Json({160, 120}));
+  CHECK(out["pixels"][1]["size"] == Json({250, 170}));
+  CHECK(out["threads"].size() == std::max(1u, std::thread::hardware_concurrency()));
+  for (const Json& cell : out["threads"]) CHECK(cell["digest"] == triangles[3]["digest"]);
+  for (const char* sweep : {"triangles", "pixels", "threads"})
+    for (const Json& cell : out[sweep]) {
+      REQUIRE(!cell.contains("skipped"));
+      for (const char* figure : {"drawn", "frame_ms", "ns_per_submitted", "ns_per_drawn", "ns_per_pixel", "peak_mb"})
+        CHECK(cell[figure] > 0);
+      CHECK(cell["frames"] >= 3);
+    }
+  const std::string svg = contentOf(folder / "plot.svg");
+  CHECK(svg.compare(0, 5, "<svg ") == 0);
+  CHECK(count(svg, "</svg>") == 1);
+  CHECK(count(svg, "<g ") == count(svg, "</g>"));
+  CHECK(count(svg, "<circle ") == 3 * 4 + 1 + 5 + 3 * 2 + out["threads"].size());
+  CHECK(svg.find("nan") == svg.npos);
+}
+
+TEST_CASE("bench: nonsense ends with exit code 2 and a plot that cannot be written with 4") {
+  using Words = std::vector<std::string>;
+  for (const Words& words :
+       {Words{}, Words{"nonsense"}, Words{"raster", "--width", "0"}, Words{"raster", "--height", "4097"},
+        Words{"raster", "--target", "mmx"}, Words{"raster", "--cell", "0"}, Words{"raster", "--frames", "-3"},
+        Words{"raster", "--projection", "fish"}, Words{"scaling", "--most-triangles", "12"},
+        Words{"scaling", "--most-pixels", "100"}, Words{"scaling", "--most-pixels", "16385x1"},
+        Words{"scaling", "--size", "4x4x4"}, Words{"scaling", "--plot", "plot.jpg"},
+        Words{"scaling", "--seconds", "0"}}) {
+    const Finished f = runProgram(words);
+    INFO((words.empty() ? "" : words.back()));
+    CHECK(f.code == 2);
+    CHECK(f.out.empty());
+    CHECK(!f.err.empty());
+  }
+  const Finished f = runProgram({"scaling", "--most-triangles", "1e3", "--most-pixels", "8x8", "--size", "8x8",
+                                 "--seconds", "0.001", "--plot", "/nonexistent/plot.svg"});
+  CHECK(f.code == 4);
+}
