@@ -82,8 +82,14 @@ HWY_INLINE Corners gatherCorners(const TransformedVertices& v, VI packed) {
   c.i[1] = hn::And(hn::ShiftRight<8>(packed), hn::Set(d, 255));
   c.i[2] = hn::ShiftRight<16>(packed);
   for (int k = 0; k < 3; ++k) {
-    c.x[k] = hn::GatherIndex(d, v.xSub, c.i[k]);
-    c.y[k] = hn::GatherIndex(d, v.ySub, c.i[k]);
+    if (v.packed) {
+      const VI xy = hn::GatherIndex(d, v.xy, c.i[k]);
+      c.x[k] = hn::Add(hn::And(xy, hn::Set(d, 0xFFFF)), hn::Set(d, v.xBase));
+      c.y[k] = hn::Add(hn::BitCast(d, hn::ShiftRight<16>(hn::BitCast(DU(), xy))), hn::Set(d, v.yBase));
+    } else {
+      c.x[k] = hn::GatherIndex(d, v.xSub, c.i[k]);
+      c.y[k] = hn::GatherIndex(d, v.ySub, c.i[k]);
+    }
   }
   return c;
 }

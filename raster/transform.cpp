@@ -1,5 +1,8 @@
 #include "obscura/raster/transform.h"
 
+#include <algorithm>
+#include <limits>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "obscura/raster/transform.cpp"
 #include <hwy/foreach_target.h>
@@ -10,6 +13,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace obscura::raster {
 namespace HWY_NAMESPACE {
+
+HWY_INLINE int32_t lanesLeast(VI v) {
+  HWY_ALIGN int32_t values[16];
+  hn::Store(v, DI(), values);
+  return *std::min_element(values, values + hn::Lanes(DI()));
+}
 
 void TransformVertices(const View& view, const Draw& draw, const float* x, const float* y, const float* z, int count,
                        TransformedVertices& out) {
@@ -24,6 +33,8 @@ void TransformVertices(const View& view, const Draw& draw, const float* x, const
     return hn::IfThenElseZero(hn::RebindMask(di, mask), hn::Set(di, int32_t(code)));
   };
 
+  const int32_t most = std::numeric_limits<int32_t>::max();
+  VI xLeast = hn::Set(di, most), yLeast = xLeast, xGreatest = hn::Set(di, -most), yGreatest = xGreatest;
   int32_t anyCode = 0, allCodes = -1;
   for (int i = 0; i < count; i += lanes) {
     const V3 p = viewPosition(draw, hn::LoadU(d, x + i), hn::LoadU(d, y + i), hn::LoadU(d, z + i));
@@ -48,6 +59,11 @@ void TransformVertices(const View& view, const Draw& draw, const float* x, const
     side(hn::Lt(ySub, hn::Set(di, -view.yHalfSub)), kAbove);
     side(hn::Gt(ySub, hn::Set(di, view.yHalfSub)), kBelow);
 
+    const MI real = hn::Lt(hn::Iota(di, i), hn::Set(di, count));  // the padding repeats a vertex, but need not
+    xLeast = hn::IfThenElse(real, hn::Min(xLeast, xSub), xLeast);
+    yLeast = hn::IfThenElse(real, hn::Min(yLeast, ySub), yLeast);
+    xGreatest = hn::IfThenElse(real, hn::Max(xGreatest, xSub), xGreatest);
+    yGreatest = hn::IfThenElse(real, hn::Max(yGreatest, ySub), yGreatest);
     hn::Store(xSub, di, out.xSub + i);
     hn::Store(ySub, di, out.ySub + i);
     hn::Store(view.perspective ? inverse : p.z, d, out.key + i);
@@ -59,6 +75,15 @@ void TransformVertices(const View& view, const Draw& draw, const float* x, const
   }
   out.anyCode = anyCode;
   out.allCodes = allCodes;
+  out.xBase = lanesLeast(xLeast);
+  out.yBase = lanesLeast(yLeast);
+  const int32_t xExtent = -lanesLeast(hn::Neg(xGreatest)) - out.xBase, yExtent = -lanesLeast(hn::Neg(yGreatest)) - out.yBase;
+  out.packed = xExtent <= 0xFFFF && yExtent <= 0xFFFF;
+  for (int i = 0; out.packed && i < count; i += lanes) {
+    const VI x0 = hn::Sub(hn::Load(di, out.xSub + i), hn::Set(di, out.xBase));
+    const VI y0 = hn::Sub(hn::Load(di, out.ySub + i), hn::Set(di, out.yBase));
+    hn::Store(hn::Or(hn::And(x0, hn::Set(di, 0xFFFF)), hn::ShiftLeft<16>(y0)), di, out.xy + i);
+  }
 }
 
 }  // namespace HWY_NAMESPACE

@@ -8,6 +8,7 @@ namespace obscura::raster {
 void transformVerticesRef(const View& view, const Draw& draw, const float* x, const float* y, const float* z, int count,
                           TransformedVertices& out) {
   out.anyCode = 0;
+  out.packed = false;
   out.allCodes = -1;
   for (int i = 0; i < count; ++i) {
     float p[3];
