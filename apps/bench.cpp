@@ -5,6 +5,8 @@
 
 #include "obscura/apps/bench_accuracy.h"
 #include "obscura/apps/bench_frame.h"
+#include "obscura/apps/bench_raster.h"
+#include "obscura/apps/bench_scaling.h"
 
 int main(int argc, char** argv) {
   CLI::App app{"Benchmarks of obscura. Times are medians; to compare, take ratios from one run."};
@@ -12,8 +14,16 @@ int main(int argc, char** argv) {
   int status = 0;
   obscura::apps::FrameBenchmark frame;
   frame.addTo(app, status);
+  obscura::apps::RasterBenchmark raster;
+  raster.addTo(app, status);
+  obscura::apps::ScalingBenchmark scaling;
+  scaling.addTo(app, status);
   obscura::apps::AccuracyBenchmark accuracy;
   accuracy.addTo(app, status);
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;  // 0: --help
+  }
   return status;
 }

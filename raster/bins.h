@@ -76,7 +76,6 @@ class Bins {
 
   // Copies it to the other tiles that it touches, if any.
   void spread(const SmallTriangle& t) {
-    if (t.blocks == 0) return;
     const int bits = grid_.tileBits - kBlockBits, x = lowerHalf(t.block), y = upperHalf(t.block);
     const int c0 = x >> bits, c1 = (x + lowerHalf(t.blocks)) >> bits, r0 = y >> bits, r1 = (y + upperHalf(t.blocks)) >> bits;
     if (c0 == c1 && r0 == r1) return;

@@ -301,7 +301,7 @@ void SetupCluster(const View& view, const Draw& draw, const Cluster& cluster, co
       t.keyMax = s.keyMax[k];
       t.id = draw.firstTriangle + uint32_t(s.triangle[k]);
       t.masked = masked;
-      bins.spread(t);
+      if (s.blocks[k] != 0) bins.spread(t);
     }
   }
   statistics.drawn += uint64_t(visibleCount);

@@ -1,4 +1,6 @@
 // obscura-bench on tiny sizes: what it prints is complete, and its own scenes are what they claim to be.
+// What run_program.h runs; so this file cannot share a test program with those that run another.
+#undef OBSCURA_PROGRAM
 #define OBSCURA_PROGRAM OBSCURA_BIN_DIR "/obscura-bench"
 #include <catch2/catch.hpp>
 
