@@ -41,6 +41,9 @@ void checkMesh(const MeshView& m, size_t instance) {
   if (m.indices.size() % 3 != 0) fail("instance ", instance, " has ", m.indices.size(), " indices, not a multiple of 3");
   for (size_t k : {m.normals.size(), m.tangents.size(), m.uvs[0].size(), m.uvs[1].size(), m.colors.size()})
     if (k != 0 && k != n) fail("instance ", instance, " has an attribute of ", k, " elements for ", n, " vertices");
+  if (!m.clusters)
+    for (uint32_t index : m.indices)
+      if (index >= n) fail("instance ", instance, " has vertex ", index, " of ", n);
   if (m.clusters && m.clusters->triangleCount != m.triangleCount())
     fail("instance ", instance, " has clusters of ", m.clusters->triangleCount, " triangles for ", m.triangleCount());
 }

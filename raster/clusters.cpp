@@ -5,6 +5,8 @@
 #include <cfloat>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <string>
 
 namespace obscura::raster {
 namespace {
@@ -222,6 +224,10 @@ Clusters buildClusters(Span<const glm::vec3> positions, Span<const uint32_t> ind
   for (uint32_t k = 0; k < out.triangleCount; ++k) {
     const uint32_t t = ordered ? order[k] : k;
     const uint32_t* corners = indices.data() + size_t(t) * 3;
+    for (int i = 0; i < 3; ++i)
+      if (corners[i] >= positions.size())
+        throw std::invalid_argument("obscura raster: triangle " + std::to_string(t) + " has vertex " + std::to_string(corners[i]) +
+                                    " of " + std::to_string(positions.size()));
     while (k >= groupEnd) {
       close();
       groupEnd = ++group < counts.size() ? groupEnd + counts[group] : UINT64_MAX;

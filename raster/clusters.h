@@ -39,11 +39,11 @@ struct Clusters {
   bool empty() const { return clusters.empty(); }
 };
 
-// In:  positions and indices of a mesh (indices < positions.size(), a multiple of three, finite or not), and how to
-//      cut it: `order` lists all triangles (a list that is not a permutation of them counts as empty: as they come),
+// In:  positions (finite or not) and indices of a mesh, three per triangle, and how to cut it: `order` lists all triangles (a list that is not a permutation of them counts as empty: as they come),
 //      `counts` the triangles of each cluster (past its end: as many as fit). A cluster that would exceed
 //      kMaxTriangles or kMaxVertices is split.
-// Out: the clusters; every triangle is in exactly one. Throws std::bad_alloc when there is no memory.
+// Out: the clusters; every triangle is in exactly one. Throws std::invalid_argument, naming the value, if an index is not
+//      below positions.size(), and std::bad_alloc when there is no memory.
 Clusters buildClusters(Span<const glm::vec3> positions, Span<const uint32_t> indices, Span<const uint32_t> order = {},
                        Span<const uint32_t> counts = {});
 

@@ -37,9 +37,10 @@ class Rasterizer {
   Rasterizer& operator=(Rasterizer&&) noexcept;
 
   // width, height: 1 ... kMaxImageSize. `out` is allocated anew unless it has the right size and planes already.
-  // Throws std::invalid_argument, naming the value, where the list contradicts itself (an index that is out of range,
-  // spans of different length, a camera without extent), std::bad_alloc without memory. Bad geometry never throws:
-  // it is dropped and counted.
+  // Throws std::invalid_argument, naming the value, where the list contradicts itself (an index that is out of range, spans
+  // of different length, a camera without extent), std::bad_alloc without memory. The vertex indices of a mesh that
+  // brings clusters are taken to be those that buildClusters has checked. Bad geometry never throws: it is dropped and
+  // counted.
   void render(const DrawList& list, const Camera& camera, int width, int height, const PlaneSet& planes, GBuffer& out);
 
   const Statistics& statistics() const;  // of the last frame

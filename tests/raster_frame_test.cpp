@@ -177,6 +177,11 @@ TEST_CASE("frame: misuse is refused and names the value") {
   s.instances[0].material = 77;
   CHECK_THROWS_WITH(render(8, 8), Catch::Contains("77"));
   s.instances[0].material = 0;
+  TestMesh& mesh = s.meshes[0];
+  mesh.view.clusters = nullptr;
+  const uint32_t kept = std::exchange(mesh.indices[7], 123456789u);
+  CHECK_THROWS_WITH(render(8, 8), Catch::Contains("123456789"));
+  mesh.indices[7] = kept;
   s.camera.zNear = -1;
   CHECK_THROWS_WITH(render(8, 8), Catch::Contains("zNear"));
 }
