@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "obscura/apps/bench_measure.h"
 #include "obscura/engine/digest.h"
 #include "obscura/engine/gltf.h"
 #include "obscura/engine/plane_image.h"
@@ -24,11 +25,6 @@ constexpr Column kColumns[] = {
     {"filter_ms", &engine::FrameTimings::filter},   {"light_ms", &engine::FrameTimings::light},
     {"display_ms", &engine::FrameTimings::display}, {"frame_ms", &engine::FrameTimings::frame},
 };
-
-double quantile(std::vector<double> v, double q) {
-  std::sort(v.begin(), v.end());
-  return v[std::min(v.size() - 1, size_t(q * double(v.size())))];
-}
 
 int fail(const engine::Error& error) {
   std::fprintf(stderr, "obscura-bench: error: %s\n", error.text().c_str());

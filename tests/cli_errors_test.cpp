@@ -17,13 +17,7 @@ using Words = std::vector<std::string>;
 
 namespace {
 
-struct Workplace {
-  TemporaryFolder folder;
-  std::string scene = folder / "scene.glb";
-
-  Workplace() { tests::writeBytes(scene, tests::cornerScene().glb()); }
-  std::string operator/(const std::string& name) const { return folder / name; }
-
+struct Workplace : tests::SceneFolder {
   // Runs "render SCENE OPTIONS" and holds the outcome against what every failure must look like.
   Finished failing(int code, const Words& options, const std::string& says) const {
     return failingOn(scene, code, options, says);

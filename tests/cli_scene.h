@@ -49,4 +49,13 @@ inline GltfBuilder cornerScene() {
   return b;
 }
 
+// A folder with scene.glb, and what is rendered from it.
+struct SceneFolder {
+  TemporaryFolder folder;
+  std::string scene = folder / "scene.glb";
+
+  SceneFolder() { writeBytes(scene, cornerScene().glb()); }
+  std::string operator/(const std::string& name) const { return folder / name; }
+};
+
 }  // namespace obscura::tests

@@ -19,14 +19,7 @@ using Words = std::vector<std::string>;
 
 namespace {
 
-// A folder with scene.glb and what is rendered from it.
-struct Workplace {
-  TemporaryFolder folder;
-  std::string scene = folder / "scene.glb";
-
-  Workplace() { tests::writeBytes(scene, tests::cornerScene().glb()); }
-  std::string operator/(const std::string& name) const { return folder / name; }
-
+struct Workplace : tests::SceneFolder {
   // 48 x 40 pixels, unless the options say otherwise.
   Finished render(const Words& options) const {
     Words words = {"render", scene};
