@@ -1,6 +1,5 @@
 #include "obscura/apps/bench_frame.h"
 
-#include <algorithm>
 #include <cstdio>
 #include <vector>
 
