@@ -17,7 +17,7 @@ glm::vec3 cross(const glm::vec3& a, const glm::vec3& b) {
 bool normalize(glm::vec3& v) {
   const float square = dot(v, v);
   if (!(square >= 1e-36f && square <= 1e36f)) return false;
-  v /= std::sqrt(square);
+  v *= 1 / std::sqrt(square);
   return true;
 }
 
@@ -68,9 +68,10 @@ glm::vec3 bend(const SurfaceContext& context, const SurfacePoint& p, const glm::
 glm::vec3 shadingNormal(const SurfaceContext& context, const SurfacePoint& p) {
   const Draw& draw = *p.draw;
   const auto normals = draw.mesh->normals;
-  glm::vec3 n(0);
-  if (!normals.empty()) n = rotate(draw.normalToView, interpolate(p, normals));
-  if (normals.empty() || !normalize(n)) n = geometricNormal(p);
+  glm::vec3 corner[3];
+  for (int i = 0; i < 3; ++i) corner[i] = normals.empty() ? geometricNormal(p) : rotate(draw.normalToView, normals[p.vertex[i]]);
+  glm::vec3 n = corner[0] + ((corner[1] - corner[0]) * p.weight[1] + (corner[2] - corner[0]) * p.weight[2]);
+  if (!normalize(n)) n = geometricNormal(p);
   if (draw.material->normalMap.texture >= 0) n = bend(context, p, n);
   const bool fromBehind = p.clockwise != draw.mirrored;
   return draw.material->doubleSided && fromBehind ? -n : n;

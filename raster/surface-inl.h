@@ -31,13 +31,12 @@ HWY_INLINE V3 select(MF mask, const V3& yes, const V3& no) {
 
 // One triangle per lane, all of the same draw, seen from one pixel per lane.
 struct Seen {
-  bool one;      // the same triangle in all lanes: its vertices are read once, not gathered
+  bool one;             // the same triangle in all lanes: its vertices are read once, not gathered
   uint32_t vertex[3];
-  VI index[3];   // vertices, where they differ
-  V3 object[3];  // their positions, object space
-  VF weight[3];  // barycentric, clamped: all >= 0, sum 1 but for rounding
-  MF clockwise;  // as seen in the image
-  VF w[3], hx[3], hy[3], sum;  // for the gradients
+  VI index[3];          // vertices, where they differ
+  VF weight[3];         // barycentric, clamped: all >= 0, sum 1 but for rounding
+  MF clockwise;         // as seen in the image
+  VF gx[3], gy[3], sum; // gradients of the weight planes, and their sum at the pixel
 };
 
 // Vertex attribute `values` (floats, kComponents a vertex), component c, of corner i.
@@ -57,69 +56,55 @@ HWY_INLINE V3 corner3(const Seen& s, Span<const glm::vec3> values, int i) {
   return {corner<3>(s, v, 0, i), corner<3>(s, v, 1, i), corner<3>(s, v, 2, i)};
 }
 
-// Weights, once the vertices are known.
-HWY_INLINE void weigh(const View& view, const Draw& draw, VF xCenter, VF yCenter, Seen& s) {
+// Vertices of a triangle of the mesh per lane.
+HWY_INLINE void gatherVertices(const Draw& draw, VI triangle, Seen& s) {
+  const DI di;
+  const VI at = hn::Add(hn::Add(triangle, triangle), triangle);
+  const int32_t* indices = reinterpret_cast<const int32_t*>(draw.mesh->indices.data());
+  for (int i = 0; i < 3; ++i) s.index[i] = hn::GatherIndex(di, indices, hn::Add(at, hn::Set(di, i)));
+}
+
+// Weights from the values of the three weight planes.
+HWY_INLINE void weigh(const V3& b, Seen& s) {
   const DF d;
-  const VF xc = hn::Sub(xCenter, hn::Set(d, view.xShiftSub)), yc = hn::Sub(yCenter, hn::Set(d, view.yShiftSub));
-  for (int i = 0; i < 3; ++i) {
-    s.object[i] = corner3(s, draw.mesh->positions, i);
-    const V3 p = viewPosition(draw, s.object[i].x, s.object[i].y, s.object[i].z);
-    s.w[i] = view.perspective ? hn::Neg(p.z) : hn::Set(d, 1.0f);
-    s.hx[i] = hn::Sub(hn::Mul(p.x, hn::Set(d, view.xScaleSub)), hn::Mul(s.w[i], xc));
-    s.hy[i] = hn::Sub(hn::Mul(p.y, hn::Set(d, view.yScaleSub)), hn::Mul(s.w[i], yc));
-  }
-  auto weight = [&](int j, int k) HWY_ATTR { return hn::Sub(hn::Mul(s.hx[j], s.hy[k]), hn::Mul(s.hy[j], s.hx[k])); };
-  const VF b0 = weight(1, 2), b1 = weight(2, 0), b2 = weight(0, 1);
-  s.sum = hn::Add(hn::Add(b0, b1), b2);
-  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+  s.sum = hn::Add(hn::Add(b.x, b.y), b.z);
+  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f), perSum = hn::Div(one, s.sum);
   s.clockwise = hn::Gt(s.sum, zero);
-  const MF usable = hn::Gt(hn::Abs(s.sum), zero);
   // NaN fails every comparison and ends as 0.
-  auto clamped = [&](VF b, VF most) HWY_ATTR {
-    const VF l = hn::IfThenElseZero(usable, hn::Div(b, s.sum));
-    const VF positive = hn::IfThenElseZero(hn::Gt(l, zero), l);
+  auto clamped = [&](VF value, VF most) HWY_ATTR {
+    const VF l = hn::Mul(value, perSum), positive = hn::IfThenElseZero(hn::Gt(l, zero), l);
     return hn::IfThenElse(hn::Lt(positive, most), positive, most);
   };
-  s.weight[1] = clamped(b1, one);
+  s.weight[1] = clamped(b.y, one);
   const VF rest = hn::Sub(one, s.weight[1]);
-  s.weight[2] = clamped(b2, rest);
+  s.weight[2] = clamped(b.z, rest);
   s.weight[0] = hn::Sub(rest, s.weight[2]);
 }
 
-// Triangle of the mesh per lane.
-HWY_INLINE Seen seePixel(const View& view, const Draw& draw, VI triangle, VF xCenter, VF yCenter) {
-  const DI di;
-  Seen s;
-  s.one = false;
-  const VI at = hn::Add(hn::Add(triangle, triangle), triangle);
-  const int32_t* indices = reinterpret_cast<const int32_t*>(draw.mesh->indices.data());
-  for (int i = 0; i < 3; ++i) {
-    s.index[i] = hn::GatherIndex(di, indices, hn::Add(at, hn::Set(di, i)));
-    s.vertex[i] = 0;
-  }
-  weigh(view, draw, xCenter, yCenter, s);
-  return s;
+// Value of a weight plane dx, dy pixels from the cell's first.
+HWY_INLINE VF planeAt(float c, float gx, float gy, VF dx, VF dy) {
+  const DF d;
+  return hn::Add(hn::Set(d, c), hn::Add(hn::Mul(hn::Set(d, gx), dx), hn::Mul(hn::Set(d, gy), dy)));
 }
 
 // The same triangle in all lanes.
-HWY_INLINE Seen seePixels(const View& view, const Draw& draw, uint32_t triangle, VF xCenter, VF yCenter) {
+HWY_INLINE Seen seeTriangle(const WeightPlanes& planes, const uint32_t vertex[3], VF dx, VF dy) {
+  const DF d;
   Seen s;
   s.one = true;
   for (int i = 0; i < 3; ++i) {
-    s.vertex[i] = draw.mesh->indices[size_t(triangle) * 3 + size_t(i)];
+    s.vertex[i] = vertex[i];
     s.index[i] = hn::Zero(DI());
+    s.gx[i] = hn::Set(d, planes.gx[i]);
+    s.gy[i] = hn::Set(d, planes.gy[i]);
   }
-  weigh(view, draw, xCenter, yCenter, s);
+  auto plane = [&](int i) HWY_ATTR { return planeAt(planes.c[i], planes.gx[i], planes.gy[i], dx, dy); };
+  weigh({plane(0), plane(1), plane(2)}, s);
   return s;
 }
 
 HWY_INLINE VF interpolate(const Seen& s, VF a0, VF a1, VF a2) {
   return hn::Add(hn::Add(hn::Mul(a0, s.weight[0]), hn::Mul(a1, s.weight[1])), hn::Mul(a2, s.weight[2]));
-}
-
-HWY_INLINE V3 interpolate3(const Seen& s, Span<const glm::vec3> values) {
-  const V3 a = corner3(s, values, 0), b = corner3(s, values, 1), c = corner3(s, values, 2);
-  return {interpolate(s, a.x, b.x, c.x), interpolate(s, a.y, b.y, c.y), interpolate(s, a.z, b.z, c.z)};
 }
 
 // Component `c` of a span of glm::vec2 or vec4 at the three vertices.
@@ -158,15 +143,10 @@ HWY_INLINE TextureCoordinates textureCoordinates(const Draw& draw, const Seen& s
   out.v = interpolate(s, v[0], v[1], v[2]);
   out.squaredLength = hn::Zero(d);
   if (!needsLod(texture)) return out;
-  // b_i is linear in the centre C, hence so is sum: d(b_i / sum) = (d b_i - (b_i / sum) d sum) / sum, per sub-pixel.
-  const VF scaleU = hn::Set(d, float(texture.width) * float(kSub)), scaleV = hn::Set(d, float(texture.height) * float(kSub));
+  // d(b_i / sum) = (d b_i - (b_i / sum) d sum) / sum, per pixel.
+  const VF scaleU = hn::Set(d, float(texture.width)), scaleV = hn::Set(d, float(texture.height));
   for (int axis = 0; axis < 2; ++axis) {
-    VF db[3];
-    for (int i = 0; i < 3; ++i) {
-      const int j = i == 2 ? 0 : i + 1, k = i == 0 ? 2 : i - 1;
-      db[i] = axis == 0 ? hn::Sub(hn::Mul(s.w[k], s.hy[j]), hn::Mul(s.w[j], s.hy[k]))
-                        : hn::Sub(hn::Mul(s.w[j], s.hx[k]), hn::Mul(s.w[k], s.hx[j]));
-    }
+    const VF* db = axis == 0 ? s.gx : s.gy;
     const VF dSum = hn::Add(hn::Add(db[0], db[1]), db[2]);
     auto gradient = [&](const VF a[3], VF value, VF texels) HWY_ATTR {
       const VF da = hn::Add(hn::Add(hn::Mul(db[0], a[0]), hn::Mul(db[1], a[1])), hn::Mul(db[2], a[2]));

@@ -16,8 +16,8 @@ struct SurfacePoint {
   glm::vec3 object[3];
   float weight[3];
   bool clockwise = false;
-  glm::vec3 h[3];  // (x, y, w) of the vertices, sub-pixels as seen from the pixel's centre
-  float sum = 0;
+  WeightPlanes planes;
+  float sum = 0;  // of the planes, at the pixel
 };
 
 // a0 w0 + a1 w1 + a2 w2 of a vertex attribute.

@@ -14,17 +14,31 @@ HWY_BEFORE_NAMESPACE();
 namespace obscura::raster {
 namespace HWY_NAMESPACE {
 
-// The part of `covered` where the triangle's alpha reaches the material's cutoff.
-HWY_NOINLINE MF alphaTest(const SurfaceContext& context, uint32_t id, VI x, VI y, MF covered) {
-  const DF d;
-  const DI di;
-  const View& view = *context.view;
-  const Draw& draw = drawOf(context, id);
-  const VI xc = hn::Add(hn::ShiftLeft<kSubBits>(x), hn::Set(di, view.xCenterSub(0)));
-  const VI yc = hn::Add(hn::ShiftLeft<kSubBits>(y), hn::Set(di, view.yCenterSub(0)));
-  const Seen s = seePixels(view, draw, id - draw.firstTriangle, hn::ConvertTo(d, xc), hn::ConvertTo(d, yc));
-  return hn::And(covered, hn::Ge(baseColor(context, draw, s).a, hn::Set(d, draw.material->alphaCutoff)));
-}
+// A triangle whose alpha decides per pixel; its weight planes are those of the last cell.
+class MaskedTriangle {
+ public:
+  MaskedTriangle(const SurfaceContext& context, uint32_t id) : context_(context), draw_(drawOf(context, id)) {
+    for (int i = 0; i < 3; ++i) vertex_[i] = draw_.mesh->indices[size_t(id - draw_.firstTriangle) * 3 + size_t(i)];
+  }
+
+  // The part of `covered` where alpha reaches the material's cutoff, in the block at pixel (x, y) of the image.
+  HWY_NOINLINE MF test(int x, int y, VI lx, VI ly, MF covered) {
+    const DF d;
+    const DI di;
+    const int cellX = x - x % kCell, cellY = y - y % kCell;
+    if (cellX != cellX_ || cellY != cellY_) planes_ = weightPlanes(*context_.view, draw_, vertex_, cellX_ = cellX, cellY_ = cellY);
+    const VI dx = hn::Add(lx, hn::Set(di, x - cellX)), dy = hn::Add(ly, hn::Set(di, y - cellY));
+    const Seen s = seeTriangle(planes_, vertex_, hn::ConvertTo(d, dx), hn::ConvertTo(d, dy));
+    return hn::And(covered, hn::Ge(baseColor(context_, draw_, s).a, hn::Set(d, draw_.material->alphaCutoff)));
+  }
+
+ private:
+  const SurfaceContext& context_;
+  const Draw& draw_;
+  uint32_t vertex_[3];
+  WeightPlanes planes_;
+  int cellX_ = -1, cellY_ = -1;
+};
 
 // A triangle as the block loop sees it: edge functions at the upper left pixel of its first block in the tile.
 struct Blocks {
@@ -57,8 +71,8 @@ HWY_INLINE PixelVector pixelVector(const Blocks& t, int first) {
   return v;
 }
 
-template <bool kMasked>
-HWY_INLINE void fillBlock(const SurfaceContext& context, const Blocks& t, const PixelVector& v, int column, int row, TileBuffers& out) {
+// masked: null where coverage is all that counts.
+HWY_INLINE void fillBlock(MaskedTriangle* masked, const Blocks& t, const PixelVector& v, int column, int row, TileBuffers& out) {
   const DF d;
   const DI di;
   const DU du;
@@ -75,16 +89,13 @@ HWY_INLINE void fillBlock(const SurfaceContext& context, const Blocks& t, const 
   const VU oldId = hn::Load(du, out.id + at);
   const MF nearer = hn::Or(hn::Gt(key, oldKey), hn::And(hn::Eq(key, oldKey), hn::RebindMask(d, hn::Lt(id, oldId))));
   MF wins = hn::And(nearer, hn::RebindMask(d, inside));
-  if (kMasked && !hn::AllFalse(d, wins)) {
-    const VI px = hn::Add(v.lx, hn::Set(di, out.x + (t.x + column) * kBlock)), py = hn::Add(v.ly, hn::Set(di, out.y + (t.y + row) * kBlock));
-    wins = alphaTest(context, t.id, px, py, wins);
-  }
+  if (masked && !hn::AllFalse(d, wins))
+    wins = masked->test(out.x + (t.x + column) * kBlock, out.y + (t.y + row) * kBlock, v.lx, v.ly, wins);
   hn::Store(hn::IfThenElse(wins, key, oldKey), d, out.key + at);
   hn::Store(hn::IfThenElse(hn::RebindMask(du, wins), id, oldId), du, out.id + at);
 }
 
-template <bool kMasked>
-HWY_INLINE void fill(const SurfaceContext& context, const Blocks& t, TileBuffers& out) {
+HWY_INLINE void fillBlocks(MaskedTriangle* masked, const Blocks& t, TileBuffers& out) {
   const DI di;
   constexpr int kLanesPerBlock = kBlock * kBlock;
   const int lanes = int(hn::Lanes(di));
@@ -92,7 +103,7 @@ HWY_INLINE void fill(const SurfaceContext& context, const Blocks& t, TileBuffers
     for (int first = 0; first < kLanesPerBlock; first += lanes) {
       const PixelVector v = pixelVector(t, first);
       for (int row = 0; row < t.rows; ++row)
-        for (int column = 0; column < t.columns; ++column) fillBlock<kMasked>(context, t, v, column, row, out);
+        for (int column = 0; column < t.columns; ++column) fillBlock(masked, t, v, column, row, out);
     }
     return;
   }
@@ -113,8 +124,17 @@ HWY_INLINE void fill(const SurfaceContext& context, const Blocks& t, TileBuffers
     }
     for (int first = 0; count > 0 && first < kLanesPerBlock; first += lanes) {
       const PixelVector v = pixelVector(t, first);
-      for (int i = 0; i < count; ++i) fillBlock<kMasked>(context, t, v, touched[i], row, out);
+      for (int i = 0; i < count; ++i) fillBlock(masked, t, v, touched[i], row, out);
     }
+  }
+}
+
+HWY_INLINE void fill(const SurfaceContext& context, bool masked, const Blocks& t, TileBuffers& out) {
+  if (HWY_LIKELY(!masked)) {
+    fillBlocks(nullptr, t, out);
+  } else {
+    MaskedTriangle triangle(context, t.id);
+    fillBlocks(&triangle, t, out);
   }
 }
 
@@ -123,11 +143,8 @@ HWY_INLINE void rasterSingle(const SurfaceContext& context, const SmallTriangle&
   const int a0 = lowerHalf(t.a), a1 = upperHalf(t.a), b0 = lowerHalf(t.b), b1 = upperHalf(t.b);
   const Blocks c{{t.e[0], t.e[1], t.e[2]}, {a0, a1, -a0 - a1}, {b0, b1, -b0 - b1}, lowerHalf(t.block) - (out.x >> kBlockBits),
        upperHalf(t.block) - (out.y >> kBlockBits), 1, 1, t.key0, t.xGradient, t.yGradient, t.keyMin, t.keyMax, t.xFromP0, t.yFromP0, t.id};
-  for (int first = 0; first < kBlock * kBlock; first += int(hn::Lanes(DF()))) {
-    const PixelVector v = pixelVector(c, first);
-    if (HWY_UNLIKELY(t.masked)) fillBlock<true>(context, c, v, 0, 0, out);
-    else fillBlock<false>(context, c, v, 0, 0, out);
-  }
+  if (HWY_UNLIKELY(t.masked)) return fill(context, true, c, out);
+  for (int first = 0; first < kBlock * kBlock; first += int(hn::Lanes(DF()))) fillBlock(nullptr, c, pixelVector(c, first), 0, 0, out);
 }
 
 HWY_INLINE void rasterSmall(const SurfaceContext& context, const SmallTriangle& t, TileBuffers& out) {
@@ -145,7 +162,7 @@ HWY_INLINE void rasterSmall(const SurfaceContext& context, const SmallTriangle& 
   c.xFromP0 = t.xFromP0 + float(dx * kSub);
   c.yFromP0 = t.yFromP0 + float(dy * kSub);
   c.id = t.id;
-  HWY_UNLIKELY(t.masked) ? fill<true>(context, c, out) : fill<false>(context, c, out);
+  fill(context, t.masked, c, out);
 }
 
 HWY_INLINE void rasterLarge(const SurfaceContext& context, const LargeTriangle& t, TileBuffers& out) {
@@ -167,7 +184,7 @@ HWY_INLINE void rasterLarge(const SurfaceContext& context, const LargeTriangle& 
   c.xFromP0 = float(context.view->xCenterSub(x) - t.p0x);
   c.yFromP0 = float(context.view->yCenterSub(y) - t.p0y);
   c.id = t.id;
-  HWY_UNLIKELY(t.masked) ? fill<true>(context, c, out) : fill<false>(context, c, out);
+  fill(context, t.masked, c, out);
 }
 
 void RasterTile(const SurfaceContext& context, int tile, Span<const Bins> bins, TileBuffers& out) {

@@ -15,9 +15,9 @@ struct Bound {
 constexpr Bound kAnywhere[] = {
     {"depth", 48, 0.75},       // the key is a float: half an ulp, and more where a plane is steep
     {"surface", 6e5, 4000},    // half of 1/256 pixel times the slope: slivers and planes seen from the edge
-    {"weights", 8e4, 1200},    // float positions seen from the pixel: the smaller the triangle, the fewer bits are left
-    {"texture", 1.2e4, 600},
-    {"normal", 3e4, 600},
+    {"weights", 3e4, 800},     // float planes in a cell: the narrower the triangle, the fewer bits are left
+    {"texture", 6e3, 400},
+    {"normal", 1e4, 400},
 };
 constexpr Bound kPlain[] = {
     {"depth", 48, 0.75}, {"surface", 3e4, 300}, {"weights", 500, 6}, {"texture", 300, 4}, {"normal", 300, 4},
