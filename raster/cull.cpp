@@ -1,6 +1,9 @@
 #include "obscura/raster/cull.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace obscura::raster {
 namespace {
@@ -8,17 +11,26 @@ namespace {
 // Relative slack of every test here; a float expression of this length errs by some 1e-6.
 constexpr float kSlack = 1e-4f;
 
+constexpr float kMostReach = 1e18f;  // beyond, products come near to overflow
+
 }  // namespace
 
-bool sphereVisible(const View& view, const Draw& draw, const glm::vec3& center, float radius) {
-  float p[3], size = 0;
+ViewSphere viewSphere(const Draw& draw, const glm::vec3& center, float radius) {
+  ViewSphere s;
+  float size = 0;
   for (int r = 0; r < 3; ++r) {
     const float* m = draw.viewFromObject[r];
-    p[r] = m[0] * center.x + m[1] * center.y + m[2] * center.z + m[3];
+    s.p[r] = m[0] * center.x + m[1] * center.y + m[2] * center.z + m[3];
     size += std::fabs(m[0] * center.x) + std::fabs(m[1] * center.y) + std::fabs(m[2] * center.z) + std::fabs(m[3]);
   }
-  const float reach = radius * draw.maxScale + (size + radius * draw.maxScale) * kSlack;
-  if (!(reach < 1e18f)) return true;  // NaN, infinite or near overflow: the triangles decide one by one
+  s.reach = radius * draw.maxScale + (size + radius * draw.maxScale) * kSlack;
+  return s;
+}
+
+bool sphereVisible(const View& view, const ViewSphere& sphere) {
+  const float* p = sphere.p;
+  const float reach = sphere.reach;
+  if (!(reach < kMostReach)) return true;  // the triangles decide one by one
   const float zView = -p[2];
   if (zView + reach < view.zNear || zView - reach > view.zFar) return false;
   // Each side plane with a pixel to spare for snapping: +-(x scale) + zView (half + 1 pixel +- shift) >= 0.
@@ -33,6 +45,39 @@ bool sphereVisible(const View& view, const Draw& draw, const glm::vec3& center, 
       if (distance + reach * length * (1 + kSlack) + std::fabs(slack) < 0) return false;
     }
   return true;
+}
+
+ScreenBound screenBound(const View& view, const ViewSphere& s) {
+  ScreenBound b;
+  b.x1 = view.width - 1;
+  b.y1 = view.height - 1;
+  const float first = -s.p[2] - s.reach, last = -s.p[2] + s.reach;
+  b.nearestKey = std::numeric_limits<float>::infinity();
+  if (!(s.reach < kMostReach) || (view.perspective && !(first > s.reach * kSlack))) return b;
+  b.nearestKey = view.perspective ? 1 / first * (1 + kSlack) : -first + std::fabs(first) * kSlack;
+  const float scale[2] = {view.xScaleSub, view.yScaleSub}, shift[2] = {view.xShiftSub, view.yShiftSub};
+  const int32_t half[2] = {view.xHalfSub, view.yHalfSub};
+  int* const range[2][2] = {{&b.x0, &b.x1}, {&b.y0, &b.y1}};
+  for (int axis = 0; axis < 2; ++axis) {
+    // x / z of the box around the sphere is least and greatest in its corners.
+    const float lo = s.p[axis] - s.reach, hi = s.p[axis] + s.reach;
+    const float least = view.perspective ? lo / (lo < 0 ? first : last) : lo, most = view.perspective ? hi / (hi > 0 ? first : last) : hi;
+    float from = least * scale[axis] + shift[axis], to = most * scale[axis] + shift[axis];
+    if (from > to) std::swap(from, to);
+    const float slack = (std::fabs(from) + std::fabs(to)) * kSlack + 2 * kSub;  // a pixel for snapping, one for rounding
+    const auto pixel = [&](float sub) { return int(std::floor((sub + float(half[axis])) * (1.0f / kSub))); };
+    const float limit = 4.0f * kMaxImageSize * kSub;
+    *range[axis][0] = std::max(*range[axis][0], pixel(std::clamp(from - slack, -limit, limit)));
+    *range[axis][1] = std::min(*range[axis][1], pixel(std::clamp(to + slack, -limit, limit)));
+  }
+  return b;
+}
+
+ScreenBound boundOf(const View& view, const TransformedVertices& v) {
+  const auto first = [](int32_t sub, int32_t half) { return std::max((sub + half + kSub / 2 - 1) >> kSubBits, 0); };
+  const auto last = [](int32_t sub, int32_t half, int size) { return std::min((sub + half - kSub / 2) >> kSubBits, size - 1); };
+  return {first(v.xLeast, view.xHalfSub), first(v.yLeast, view.yHalfSub), last(v.xGreatest, view.xHalfSub, view.width),
+          last(v.yGreatest, view.yHalfSub, view.height), v.nearestKey};
 }
 
 bool clusterFacesEye(const Draw& draw, const Cluster& cluster) {

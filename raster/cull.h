@@ -3,12 +3,29 @@
 #pragma once
 
 #include "obscura/raster/clusters.h"
+#include "obscura/raster/occlusion.h"
+#include "obscura/raster/transform.h"
 #include "obscura/raster/view.h"
 
 namespace obscura::raster {
 
-// A sphere in object space reaches into the view (or may).
-bool sphereVisible(const View& view, const Draw& draw, const glm::vec3& center, float radius);
+// A bounding sphere, seen: view-space centre, and a radius with room for the rounding of every vertex inside. reach is
+// infinite or NaN where float cannot tell.
+struct ViewSphere {
+  float p[3];
+  float reach;
+};
+ViewSphere viewSphere(const Draw& draw, const glm::vec3& center, float radius);
+
+// It reaches into the view (or may).
+bool sphereVisible(const View& view, const ViewSphere& sphere);
+
+// The pixels that it may touch, and the key of its nearest point; all pixels and an infinite key if it is not wholly in
+// front of the eye.
+ScreenBound screenBound(const View& view, const ViewSphere& sphere);
+
+// The pixel centres between the vertices of a cluster, none of which needs clipping; exact.
+ScreenBound boundOf(const View& view, const TransformedVertices& vertices);
 
 // Some triangle of the cluster may face the eye. Always true for what has two sides.
 bool clusterFacesEye(const Draw& draw, const Cluster& cluster);

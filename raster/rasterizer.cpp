@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "obscura/raster/cull.h"
 #include "obscura/raster/float_environment.h"
+#include "obscura/raster/occlusion.h"
 #include "obscura/raster/parallel.h"
 #include "obscura/raster/resolve.h"
 #include "obscura/raster/setup.h"
@@ -20,15 +23,28 @@
 namespace obscura::raster {
 namespace {
 
-struct Worker {
-  Statistics statistics;
-  TransformedVertices vertices;
-  TileBuffers tile;
+// A cluster that may be seen.
+struct Candidate {
+  const Draw* draw;
+  const Cluster* cluster;
+  float nearestKey;
 };
 
-double millisecondsSince(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
+struct Worker {
+  Statistics statistics;
+  std::vector<Candidate> candidates;
+  TransformedVertices vertices;
+  TileMemory tile;
+};
+
+// Frames of fewer clusters are drawn in one round: rounds have a cost of their own.
+constexpr size_t kFewClusters = 512;
+// Clusters that the first rounds look at; later ones look at twice as many each.
+constexpr size_t kFirstClusters = 8192;
+// The nearest of the clusters found, one in so many, are drawn before the others are looked at again.
+constexpr size_t kFrontPart = 4;
+// The visibility of larger images (pixels) is not kept from round to round: 8 bytes a pixel.
+constexpr int64_t kMostKept = int64_t(1) << 25;
 
 int bitsOfTile(int tile) {
   for (int bits = kMinTileBits; bits <= kMaxTileBits; ++bits)
@@ -48,12 +64,29 @@ struct Rasterizer::State {
   std::vector<Bins> bins;  // one per worker, contiguous for the tiles
   Statistics statistics;
   Timings timings;
+  // Of frames that are drawn in rounds, front to back.
+  bool rounds = false;
+  OcclusionMap occlusion;
+  TileMemory kept;
+  std::vector<uint8_t> started;  // tiles that hold something
 
   explicit State(const Settings& s)
       : settings(s), target(chooseTarget(s.target)), tileBits(bitsOfTile(s.tile)), parallel(s.threads) {}
 
-  void setupClusters(const View& view, const std::vector<Draw>& draws, const TileGrid& grid);
-  void rasterTiles(const SurfaceContext& context, const TileGrid& grid, GBuffer& out);
+  void beginFrame(const TileGrid& grid, bool inRounds);
+  std::vector<const Draw*> visibleInstances(const View& view, const std::vector<Draw>& draws);
+  std::vector<Candidate> findCandidates(const View& view, Span<const Draw* const> draws);
+  void setupClusters(const View& view, const TileGrid& grid, Span<const Candidate> candidates, bool again);
+  void drawRound(const SurfaceContext& context, const TileGrid& grid);
+  void finishTiles(const SurfaceContext& context, const TileGrid& grid, GBuffer& out);
+  void skip(Statistics& s, uint64_t Statistics::*what, uint64_t triangles) {
+    ++(s.*what);
+    s.trianglesCulled += triangles;
+  }
+  bool anyBins(int tile) const {
+    return std::any_of(bins.begin(), bins.end(), [&](const Bins& b) { return !b.empty(tile); });
+  }
+  bool drawn = false;  // a round was: the map says something
 };
 
 Rasterizer::Rasterizer(const Settings& settings) {
@@ -66,61 +99,136 @@ Rasterizer& Rasterizer::operator=(Rasterizer&&) noexcept = default;
 const Statistics& Rasterizer::statistics() const { return state_->statistics; }
 const Timings& Rasterizer::timings() const { return state_->timings; }
 
-void Rasterizer::State::setupClusters(const View& view, const std::vector<Draw>& draws, const TileGrid& grid) {
-  // Clusters of all visible instances, numbered through: first[k] is the number of draw k's first.
-  std::vector<const Draw*> visible;
-  std::vector<size_t> first;
-  size_t count = 0;
+void Rasterizer::State::beginFrame(const TileGrid& grid, bool inRounds) {
+  rounds = inRounds;
+  drawn = false;
+  for (Bins& b : bins) b.reset(grid);
+  if (!rounds) return;
+  occlusion.reset(grid.width, grid.height);
+  kept.reserve(size_t(grid.count()), grid.tileBits);
+  started.assign(size_t(grid.count()), 0);
+}
+
+// Front to back.
+std::vector<const Draw*> Rasterizer::State::visibleInstances(const View& view, const std::vector<Draw>& draws) {
+  std::vector<std::pair<float, const Draw*>> found;
   for (const Draw& draw : draws) {
     ++statistics.instances;
     statistics.triangles += draw.triangleCount;
-    if (settings.skip && !sphereVisible(view, draw, draw.clusters->center, draw.clusters->radius)) {
-      ++statistics.instancesCulled;
-      statistics.trianglesCulled += draw.triangleCount;
+    const ViewSphere sphere = viewSphere(draw, draw.clusters->center, draw.clusters->radius);
+    if (settings.skip && !sphereVisible(view, sphere)) skip(statistics, &Statistics::instancesCulled, draw.triangleCount);
+    else found.push_back({-screenBound(view, sphere).nearestKey, &draw});
+  }
+  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<const Draw*> visible;
+  for (const auto& [key, draw] : found) visible.push_back(draw);
+  return visible;
+}
+
+// Those clusters of the draws that are not certainly invisible.
+std::vector<Candidate> Rasterizer::State::findCandidates(const View& view, Span<const Draw* const> draws) {
+  // Clusters numbered through: first[k] is the number of draw k's first.
+  std::vector<const Draw*> open;
+  std::vector<size_t> first;
+  size_t count = 0;
+  for (const Draw* draw : draws) {
+    if (drawn && occlusion.hides(screenBound(view, viewSphere(*draw, draw->clusters->center, draw->clusters->radius)))) {
+      skip(statistics, &Statistics::instancesHidden, draw->triangleCount);
       continue;
     }
-    visible.push_back(&draw);
+    open.push_back(draw);
     first.push_back(count);
-    count += draw.clusters->clusters.size();
+    count += draw->clusters->clusters.size();
   }
   statistics.clusters += count;
-  for (Bins& b : bins) b.reset(grid);
-  constexpr size_t kClustersPerTask = 32;
+  for (auto& w : workers) w->candidates.clear();
+  constexpr size_t kClustersPerTask = 256;
   parallel.forRanges(count, kClustersPerTask, [&](size_t begin, size_t end, int index) {
     Worker& worker = *workers[size_t(index)];
     size_t k = size_t(std::upper_bound(first.begin(), first.end(), begin) - first.begin()) - 1;
     for (size_t i = begin; i < end; ++i) {
       while (k + 1 < first.size() && i >= first[k + 1]) ++k;
-      const Draw& draw = *visible[k];
+      const Draw& draw = *open[k];
       const Cluster& cluster = draw.clusters->clusters[i - first[k]];
-      auto skipped = [&] {
-        ++worker.statistics.clustersCulled;
-        worker.statistics.trianglesCulled += cluster.triangleCount;
-      };
-      if (settings.skip && (!clusterFacesEye(draw, cluster) || !sphereVisible(view, draw, cluster.center, cluster.radius))) {
-        skipped();
+      Candidate candidate{&draw, &cluster, 0};
+      if (settings.skip) {
+        const ViewSphere sphere = viewSphere(draw, cluster.center, cluster.radius);
+        if (!clusterFacesEye(draw, cluster) || !sphereVisible(view, sphere)) {
+          skip(worker.statistics, &Statistics::clustersCulled, cluster.triangleCount);
+          continue;
+        }
+        const ScreenBound bound = screenBound(view, sphere);
+        if (drawn && occlusion.hides(bound)) {
+          skip(worker.statistics, &Statistics::clustersHidden, cluster.triangleCount);
+          continue;
+        }
+        candidate.nearestKey = bound.nearestKey;
+      }
+      worker.candidates.push_back(candidate);
+    }
+  });
+  std::vector<Candidate> all;
+  for (auto& w : workers) all.insert(all.end(), w->candidates.begin(), w->candidates.end());
+  return all;
+}
+
+// again: more has been drawn since the candidates were found.
+void Rasterizer::State::setupClusters(const View& view, const TileGrid& grid, Span<const Candidate> candidates, bool again) {
+  for (Bins& b : bins) b.reset(grid);
+  constexpr size_t kClustersPerTask = 32;
+  parallel.forRanges(candidates.size(), kClustersPerTask, [&](size_t begin, size_t end, int index) {
+    Worker& worker = *workers[size_t(index)];
+    for (size_t i = begin; i < end; ++i) {
+      const Draw& draw = *candidates[i].draw;
+      const Cluster& cluster = *candidates[i].cluster;
+      if (again && occlusion.hides(screenBound(view, viewSphere(draw, cluster.center, cluster.radius)))) {
+        skip(worker.statistics, &Statistics::clustersHidden, cluster.triangleCount);
         continue;
       }
       const Clusters& all = *draw.clusters;
+      TransformedVertices& v = worker.vertices;
       transformVertices(view, draw, all.x.data() + cluster.firstVertex, all.y.data() + cluster.firstVertex,
-                        all.z.data() + cluster.firstVertex, int(cluster.vertexCount), worker.vertices, target);
-      if (settings.skip && worker.vertices.allCodes != 0 && !(worker.vertices.anyCode & kNeedsClip)) {
-        skipped();  // all vertices on the same outer side of the image
-        continue;
+                        all.z.data() + cluster.firstVertex, int(cluster.vertexCount), v, target);
+      if (settings.skip && !(v.anyCode & kNeedsClip)) {
+        const ScreenBound bound = boundOf(view, v);
+        const bool misses = v.allCodes != 0 || bound.x0 > bound.x1 || bound.y0 > bound.y1;
+        if (misses || (drawn && occlusion.hides(bound))) {
+          skip(worker.statistics, misses ? &Statistics::clustersCulled : &Statistics::clustersHidden, cluster.triangleCount);
+          continue;
+        }
       }
-      setupCluster(view, draw, cluster, worker.vertices, bins[size_t(index)], worker.statistics, target);
+      setupCluster(view, draw, cluster, v, drawn ? &occlusion : nullptr, bins[size_t(index)], worker.statistics, target);
     }
   });
 }
 
-void Rasterizer::State::rasterTiles(const SurfaceContext& context, const TileGrid& grid, GBuffer& out) {
+// The bins into the tiles that are kept, and these into the map.
+void Rasterizer::State::drawRound(const SurfaceContext& context, const TileGrid& grid) {
+  parallel.forRanges(size_t(grid.count()), 1, [&](size_t begin, size_t end, int) {
+    for (size_t t = begin; t < end; ++t) {
+      if (!anyBins(int(t))) continue;
+      TileBuffers tile = placeTile(grid, int(t), kept.key(t), kept.id(t));
+      if (!std::exchange(started[t], 1)) clearTile(tile);
+      rasterTile(context, int(t), bins, tile, target);
+      occlusion.update(tile, target);
+    }
+  });
+  drawn = true;
+}
+
+// What the bins still hold, and the attributes of what is seen.
+void Rasterizer::State::finishTiles(const SurfaceContext& context, const TileGrid& grid, GBuffer& out) {
   parallel.forRanges(size_t(grid.count()), 1, [&](size_t begin, size_t end, int index) {
     Worker& worker = *workers[size_t(index)];
+    if (!rounds) worker.tile.reserve(1, grid.tileBits);
     for (size_t t = begin; t < end; ++t) {
-      const bool covered = rasterTile(context, grid, int(t), bins, settings.skip, worker.tile, target);
+      TileBuffers tile = rounds ? placeTile(grid, int(t), kept.key(t), kept.id(t)) : placeTile(grid, int(t), worker.tile.key(0), worker.tile.id(0));
+      const bool holds = rounds && started[t], more = anyBins(int(t)) || !settings.skip;
+      if (more && !holds) clearTile(tile);
+      if (more) rasterTile(context, int(t), bins, tile, target);
       ++worker.statistics.tiles;
-      worker.statistics.tilesEmpty += !covered;
-      resolveTile(context, worker.tile, covered, out, target);
+      worker.statistics.tilesEmpty += !(holds || more);
+      resolveTile(context, tile, holds || more, out, target);
     }
   });
 }
@@ -132,6 +240,7 @@ void Rasterizer::render(const DrawList& list, const Camera& camera, int width, i
   const auto start = std::chrono::steady_clock::now();
   if (out.width != width || out.height != height || !out.has(planes)) out = GBuffer(width, height, planes);
   s.statistics = {};
+  s.timings = {};
   if (s.workers.empty()) {
     s.bins.resize(size_t(s.parallel.workers()));
     for (int i = 0; i < s.parallel.workers(); ++i) s.workers.push_back(std::make_unique<Worker>());
@@ -149,11 +258,43 @@ void Rasterizer::render(const DrawList& list, const Camera& camera, int width, i
   }
   const TileGrid grid(width, height, s.tileBits);
   const SurfaceContext context{&view, draws, list.textures, s.srgb.linear};
-  s.setupClusters(view, draws, grid);
-  s.timings.setupMs = millisecondsSince(start);
-  const auto tilesStart = std::chrono::steady_clock::now();
-  s.rasterTiles(context, grid, out);
-  s.timings.tilesMs = millisecondsSince(tilesStart);
+  const std::vector<const Draw*> visible = s.visibleInstances(view, draws);
+  size_t clusters = 0;
+  for (const Draw* draw : visible) clusters += draw->clusters->clusters.size();
+  s.beginFrame(grid, s.settings.skip && clusters >= kFewClusters && int64_t(width) * height <= kMostKept);
+
+  auto lap = [last = start](double& milliseconds) mutable {
+    const auto now = std::chrono::steady_clock::now();
+    milliseconds += std::chrono::duration<double, std::milli>(now - std::exchange(last, now)).count();
+  };
+  size_t look = s.rounds ? kFirstClusters : clusters;
+  for (size_t from = 0, to = 0; from < visible.size(); from = to, look *= 2) {
+    for (size_t count = 0; to < visible.size() && (to == from || count + visible[to]->clusters->clusters.size() <= look); ++to)
+      count += visible[to]->clusters->clusters.size();
+    if (from > 0) s.drawRound(context, grid);
+    lap(s.timings.tilesMs);
+    std::vector<Candidate> found = s.findCandidates(view, {visible.data() + from, to - from});
+    Span<const Candidate> front = found, rest;
+    if (s.rounds && !found.empty()) {
+      // By a threshold, so that both parts stay in the order of the memory that they read.
+      std::vector<float> keys;
+      for (const Candidate& c : found) keys.push_back(c.nearestKey);
+      const auto threshold = keys.begin() + std::ptrdiff_t(found.size() / kFrontPart);
+      std::nth_element(keys.begin(), threshold, keys.end(), std::greater<>());
+      const auto middle = std::stable_partition(found.begin(), found.end(), [&](const Candidate& c) { return c.nearestKey > *threshold; });
+      front = {found.data(), size_t(middle - found.begin())};
+      rest = {found.data() + front.size(), found.size() - front.size()};
+    }
+    s.setupClusters(view, grid, front, false);
+    lap(s.timings.setupMs);
+    if (rest.empty()) continue;
+    s.drawRound(context, grid);
+    lap(s.timings.tilesMs);
+    s.setupClusters(view, grid, rest, true);
+    lap(s.timings.setupMs);
+  }
+  s.finishTiles(context, grid, out);
+  lap(s.timings.tilesMs);
   for (const auto& w : s.workers) s.statistics.add(w->statistics);
 }
 

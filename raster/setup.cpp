@@ -84,8 +84,8 @@ HWY_INLINE Corners gatherCorners(const TransformedVertices& v, VI packed) {
   for (int k = 0; k < 3; ++k) {
     if (v.packed) {
       const VI xy = hn::GatherIndex(d, v.xy, c.i[k]);
-      c.x[k] = hn::Add(hn::And(xy, hn::Set(d, 0xFFFF)), hn::Set(d, v.xBase));
-      c.y[k] = hn::Add(hn::BitCast(d, hn::ShiftRight<16>(hn::BitCast(DU(), xy))), hn::Set(d, v.yBase));
+      c.x[k] = hn::Add(hn::And(xy, hn::Set(d, 0xFFFF)), hn::Set(d, v.xLeast));
+      c.y[k] = hn::Add(hn::BitCast(d, hn::ShiftRight<16>(hn::BitCast(DU(), xy))), hn::Set(d, v.yLeast));
     } else {
       c.x[k] = hn::GatherIndex(d, v.xSub, c.i[k]);
       c.y[k] = hn::GatherIndex(d, v.ySub, c.i[k]);
@@ -164,6 +164,21 @@ HWY_INLINE VI doubledArea(const Corners& c) {
                  hn::Mul(hn::Sub(c.x[2], c.x[0]), hn::Sub(c.y[1], c.y[0])));
 }
 
+// Which of the triangles `mask` lie behind what has been drawn, as far as boxes of two regions a side at most tell.
+HWY_INLINE MI hiddenBoxes(const OcclusionMap& occlusion, const Box& box, VF nearestKey, MI mask) {
+  const DF d;
+  const DI di;
+  const VI most = hn::Set(di, kRegion), stride = hn::Set(di, occlusion.stride());
+  const MI small = hn::AndNot(hn::Or(hn::Gt(hn::Sub(box.x1, box.x0), most), hn::Gt(hn::Sub(box.y1, box.y0), most)), mask);
+  auto region = [&](VI pixel) HWY_ATTR { return hn::IfThenElseZero(small, hn::ShiftRight<kRegionBits>(pixel)); };
+  const VI x0 = region(box.x0), x1 = region(box.x1), row0 = hn::Mul(region(box.y0), stride), row1 = hn::Mul(region(box.y1), stride);
+  auto behind = [&](VI row, VI x) HWY_ATTR { return hn::Gt(hn::GatherIndex(d, occlusion.farthest(), hn::Add(row, x)), nearestKey); };
+  MF all = hn::And(hn::RebindMask(d, small), behind(row0, x0));
+  if (hn::AllFalse(d, all)) return hn::RebindMask(di, all);
+  all = hn::And(hn::And(all, behind(row1, x1)), hn::And(behind(row0, x1), behind(row1, x0)));
+  return hn::RebindMask(di, all);
+}
+
 // What is needed of up to a vector of surviving triangles to write their records.
 struct Survivors {
   HWY_ALIGN int32_t e[3][16], a[16], b[16], block[16], blocks[16], triangle[16];
@@ -190,7 +205,7 @@ HWY_INLINE void depthGradients(Survivors& s, int count) {
 }
 
 void SetupCluster(const View& view, const Draw& draw, const Cluster& cluster, const TransformedVertices& vertices,
-                  Bins& bins, Statistics& statistics) {
+                  const OcclusionMap* occlusion, Bins& bins, Statistics& statistics) {
   const DF d;
   const DI di;
   const int lanes = int(hn::Lanes(d));
@@ -250,6 +265,7 @@ void SetupCluster(const View& view, const Draw& draw, const Cluster& cluster, co
   // Second pass: records of the rest.
   const bool masked = draw.material->alphaMode == AlphaMode::Mask;
   Survivors s;
+  uint64_t hiddenHere = 0;
   for (int i = 0; i < visibleCount; i += lanes) {
     const int count = std::min(lanes, visibleCount - i);
     const VI index = hn::Load(di, visible + i);
@@ -261,6 +277,19 @@ void SetupCluster(const View& view, const Draw& draw, const Cluster& cluster, co
     const Edges edges = edgeFunctions(view, c, x, y, area);
     const VF key0 = hn::GatherIndex(d, vertices.key, c.i[0]), key1 = hn::GatherIndex(d, vertices.key, c.i[1]);
     const VF key2 = hn::GatherIndex(d, vertices.key, c.i[2]);
+    const VF nearest = hn::Max(hn::Max(key0, key1), key2);
+    uint32_t rest = (1u << count) - 1;  // to be written
+    if (occlusion) {
+      const MI hidden = hiddenBoxes(*occlusion, box, nearest, hn::Lt(hn::Iota(di, 0), hn::Set(di, count)));
+      const size_t hiddenCount = hn::CountTrue(di, hidden);
+      hiddenHere += hiddenCount;
+      if (hiddenCount == size_t(count)) continue;
+      if (hiddenCount > 0) {
+        uint8_t bits[8] = {};
+        hn::StoreMaskBits(di, hidden, bits);
+        rest &= ~(uint32_t(bits[0]) | uint32_t(bits[1]) << 8);
+      }
+    }
     auto pair = [&](VI lower, VI upper) HWY_ATTR {
       return hn::Or(hn::And(lower, hn::Set(di, 0xFFFF)), hn::ShiftLeft<16>(upper));
     };
@@ -282,10 +311,11 @@ void SetupCluster(const View& view, const Draw& draw, const Cluster& cluster, co
     hn::Store(key1, d, s.key1);
     hn::Store(key2, d, s.key2);
     hn::Store(hn::Min(hn::Min(key0, key1), key2), d, s.keyMin);
-    hn::Store(hn::Max(hn::Max(key0, key1), key2), d, s.keyMax);
+    hn::Store(nearest, d, s.keyMax);
     hn::Store(hn::GatherIndex(di, reinterpret_cast<const int32_t*>(triangles), index), di, s.triangle);
     depthGradients(s, count);
-    for (int k = 0; k < count; ++k) {
+    for (; rest != 0; rest &= rest - 1) {
+      const int k = int(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
       SmallTriangle& t = bins.add(s.block[k], s.blocks[k]);
       for (int n = 0; n < 3; ++n) t.e[n] = s.e[n][k];
       t.a = s.a[k];
@@ -304,7 +334,8 @@ void SetupCluster(const View& view, const Draw& draw, const Cluster& cluster, co
       if (s.blocks[k] != 0) bins.spread(t);
     }
   }
-  statistics.drawn += uint64_t(visibleCount);
+  statistics.hidden += hiddenHere;
+  statistics.drawn += uint64_t(visibleCount) - hiddenHere;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -319,8 +350,8 @@ namespace obscura::raster {
 HWY_EXPORT(SetupCluster);
 
 void setupCluster(const View& view, const Draw& draw, const Cluster& cluster, const TransformedVertices& vertices,
-                  Bins& bins, Statistics& statistics, Target target) {
-  OBSCURA_DISPATCH(SetupCluster, target)(view, draw, cluster, vertices, bins, statistics);
+                  const OcclusionMap* occlusion, Bins& bins, Statistics& statistics, Target target) {
+  OBSCURA_DISPATCH(SetupCluster, target)(view, draw, cluster, vertices, occlusion, bins, statistics);
 }
 
 }  // namespace obscura::raster

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "obscura/raster/bins.h"
+#include "obscura/raster/occlusion.h"
 #include "obscura/raster/statistics.h"
 #include "obscura/raster/target.h"
 #include "obscura/raster/transform.h"
@@ -16,8 +17,9 @@ namespace obscura::raster {
 //           tiny triangles may turn round when they are snapped.
 //   after:  the doubled area's sign.
 // Double-sided triangles only need an area; of a flattened instance only the second test is made.
+// occlusion: what is hidden by triangles drawn before, or null.
 void setupCluster(const View& view, const Draw& draw, const Cluster& cluster, const TransformedVertices& vertices,
-                  Bins& bins, Statistics& statistics, Target target);
+                  const OcclusionMap* occlusion, Bins& bins, Statistics& statistics, Target target);
 
 // The exact predicate "before" for one triangle of the mesh.
 bool facesEye(const Draw& draw, uint32_t triangle);

@@ -188,9 +188,6 @@ HWY_INLINE void rasterLarge(const SurfaceContext& context, const LargeTriangle& 
 }
 
 void RasterTile(const SurfaceContext& context, int tile, Span<const Bins> bins, TileBuffers& out) {
-  const size_t pixels = size_t(out.columns * ((out.height + kBlock - 1) >> kBlockBits)) << (2 * kBlockBits);
-  std::fill_n(out.key, pixels, -std::numeric_limits<float>::infinity());
-  std::fill_n(out.id, pixels, kNoTriangle);
   for (const Bins& b : bins) {
     for (uint32_t index : b.large(tile)) rasterLarge(context, b.triangle(index), out);
     for (const SmallTriangle& t : b.small(tile)) rasterSmall(context, t, out);
@@ -209,16 +206,34 @@ namespace obscura::raster {
 
 HWY_EXPORT(RasterTile);
 
-bool rasterTile(const SurfaceContext& context, const TileGrid& grid, int tile, Span<const Bins> bins, bool skipEmpty,
-                TileBuffers& out, Target target) {
-  out.x = (tile % grid.columns) << grid.tileBits;
-  out.y = (tile / grid.columns) << grid.tileBits;
-  out.width = std::min(1 << grid.tileBits, grid.width - out.x);
-  out.height = std::min(1 << grid.tileBits, grid.height - out.y);
-  out.columns = (1 << grid.tileBits) >> kBlockBits;
-  if (skipEmpty && std::all_of(bins.begin(), bins.end(), [&](const Bins& b) { return b.empty(tile); })) return false;
+void TileMemory::reserve(size_t tiles, int tileBits) {
+  tileBits_ = tileBits;
+  const size_t pixels = tiles << (2 * tileBits);
+  if (pixels <= size_t(keys_.width()) * size_t(keys_.height())) return;
+  keys_ = Plane<float>(int(pixels), 1);
+  ids_ = Plane<uint32_t>(int(pixels), 1);
+}
+
+TileBuffers placeTile(const TileGrid& grid, int tile, float* key, uint32_t* id) {
+  TileBuffers t;
+  t.key = key;
+  t.id = id;
+  t.x = (tile % grid.columns) << grid.tileBits;
+  t.y = (tile / grid.columns) << grid.tileBits;
+  t.width = std::min(1 << grid.tileBits, grid.width - t.x);
+  t.height = std::min(1 << grid.tileBits, grid.height - t.y);
+  t.columns = (1 << grid.tileBits) >> kBlockBits;
+  return t;
+}
+
+void clearTile(TileBuffers& tile) {
+  const size_t pixels = size_t(tile.columns * ((tile.height + kBlock - 1) >> kBlockBits)) << (2 * kBlockBits);
+  std::fill_n(tile.key, pixels, -std::numeric_limits<float>::infinity());
+  std::fill_n(tile.id, pixels, kNoTriangle);
+}
+
+void rasterTile(const SurfaceContext& context, int tile, Span<const Bins> bins, TileBuffers& out, Target target) {
   OBSCURA_DISPATCH(RasterTile, target)(context, tile, bins, out);
-  return true;
 }
 
 }  // namespace obscura::raster

@@ -19,9 +19,8 @@ static_assert(kEdgeLimit + 2ll * ((1 << kMaxTileBits) - 1) * 2 * kGuardSub < (in
 // The pixels of one tile: row after row of blocks, each of kBlock x kBlock pixels, row by row. Whole vectors, aligned and
 // always the same ones, are loaded and stored, so that a load can take what the store before it has just written.
 struct TileBuffers {
-  static constexpr int kPixels = 1 << (2 * kMaxTileBits);
-  alignas(64) float key[kPixels];
-  alignas(64) uint32_t id[kPixels];         // kNoTriangle where nothing was drawn
+  float* key = nullptr;                     // -infinity where nothing was drawn
+  uint32_t* id = nullptr;                   // kNoTriangle where nothing was drawn
   int x = 0, y = 0, width = 0, height = 0;  // of the tile, inside the image
   int columns = 0;                          // blocks in a row
 
@@ -32,10 +31,27 @@ struct TileBuffers {
   }
 };
 
+// Memory for the keys and ids of any number of tiles; grows, and never shrinks.
+class TileMemory {
+ public:
+  void reserve(size_t tiles, int tileBits);  // throws std::bad_alloc
+  float* key(size_t tile) { return keys_.row(0) + (tile << (2 * tileBits_)); }
+  uint32_t* id(size_t tile) { return ids_.row(0) + (tile << (2 * tileBits_)); }
+
+ private:
+  Plane<float> keys_;
+  Plane<uint32_t> ids_;
+  int tileBits_ = 0;
+};
+
+// Where a tile lies in the image.
+TileBuffers placeTile(const TileGrid& grid, int tile, float* key, uint32_t* id);
+
+// Nothing is drawn yet.
+void clearTile(TileBuffers& tile);
+
 // The winner of a pixel is the triangle with the larger key, on equal keys the one with the smaller id, so the order
-// in which triangles and bins come does not matter. With skipEmpty, returns false and leaves `out` unspecified but for
-// its box if the tile has no triangles.
-bool rasterTile(const SurfaceContext& context, const TileGrid& grid, int tile, Span<const Bins> bins, bool skipEmpty,
-                TileBuffers& out, Target target);
+// in which triangles and bins come, at once or in several calls, does not matter.
+void rasterTile(const SurfaceContext& context, int tile, Span<const Bins> bins, TileBuffers& out, Target target);
 
 }  // namespace obscura::raster

@@ -34,6 +34,7 @@ void TransformVertices(const View& view, const Draw& draw, const float* x, const
   };
 
   const int32_t most = std::numeric_limits<int32_t>::max();
+  VF nearest = hn::Set(d, -std::numeric_limits<float>::infinity());
   VI xLeast = hn::Set(di, most), yLeast = xLeast, xGreatest = hn::Set(di, -most), yGreatest = xGreatest;
   int32_t anyCode = 0, allCodes = -1;
   for (int i = 0; i < count; i += lanes) {
@@ -66,7 +67,9 @@ void TransformVertices(const View& view, const Draw& draw, const float* x, const
     yGreatest = hn::IfThenElse(real, hn::Max(yGreatest, ySub), yGreatest);
     hn::Store(xSub, di, out.xSub + i);
     hn::Store(ySub, di, out.ySub + i);
-    hn::Store(view.perspective ? inverse : p.z, d, out.key + i);
+    const VF key = view.perspective ? inverse : p.z;
+    nearest = hn::IfThenElse(hn::And(hn::RebindMask(d, real), hn::Gt(key, nearest)), key, nearest);
+    hn::Store(key, d, out.key + i);
     hn::Store(code, di, out.code + i);
   }
   for (int i = 0; i < count; ++i) {
@@ -75,13 +78,17 @@ void TransformVertices(const View& view, const Draw& draw, const float* x, const
   }
   out.anyCode = anyCode;
   out.allCodes = allCodes;
-  out.xBase = lanesLeast(xLeast);
-  out.yBase = lanesLeast(yLeast);
-  const int32_t xExtent = -lanesLeast(hn::Neg(xGreatest)) - out.xBase, yExtent = -lanesLeast(hn::Neg(yGreatest)) - out.yBase;
-  out.packed = xExtent <= 0xFFFF && yExtent <= 0xFFFF;
+  out.xLeast = lanesLeast(xLeast);
+  out.yLeast = lanesLeast(yLeast);
+  out.xGreatest = -lanesLeast(hn::Neg(xGreatest));
+  out.yGreatest = -lanesLeast(hn::Neg(yGreatest));
+  HWY_ALIGN float keys[16];
+  hn::Store(nearest, d, keys);
+  out.nearestKey = *std::max_element(keys, keys + lanes);
+  out.packed = out.xGreatest - out.xLeast <= 0xFFFF && out.yGreatest - out.yLeast <= 0xFFFF;
   for (int i = 0; out.packed && i < count; i += lanes) {
-    const VI x0 = hn::Sub(hn::Load(di, out.xSub + i), hn::Set(di, out.xBase));
-    const VI y0 = hn::Sub(hn::Load(di, out.ySub + i), hn::Set(di, out.yBase));
+    const VI x0 = hn::Sub(hn::Load(di, out.xSub + i), hn::Set(di, out.xLeast));
+    const VI y0 = hn::Sub(hn::Load(di, out.ySub + i), hn::Set(di, out.yLeast));
     hn::Store(hn::Or(hn::And(x0, hn::Set(di, 0xFFFF)), hn::ShiftLeft<16>(y0)), di, out.xy + i);
   }
 }

@@ -29,10 +29,11 @@ struct TransformedVertices {
   alignas(64) float key[kCapacity];     // depth key
   alignas(64) int32_t code[kCapacity];  // Outcode bits
   int32_t anyCode, allCodes;            // or / and over the vertices
-  // Where all of the cluster lies within 256 pixels (`packed`): x - xBase in the lower 16 bits, y - yBase in the upper
-  // ones, so that setup gathers half as often.
+  int32_t xLeast, yLeast, xGreatest, yGreatest;  // of xSub, ySub
+  float nearestKey;                              // the greatest of key; meaningless if anyCode has kNeedsClip
+  // Where all of the cluster lies within 256 pixels (`packed`): x - xLeast in the lower 16 bits, y - yLeast in the
+  // upper ones, so that setup gathers half as often.
   alignas(64) int32_t xy[kCapacity];
-  int32_t xBase, yBase;
   bool packed;
 };
 

@@ -22,7 +22,7 @@ TEST_CASE("clip: nothing is drawn of what lies behind the eye, and statistics st
   for (bool skip : {true, false}) {
     Statistics q;
     CHECK(covered(render(s, {1, Target::Auto, 64, skip}, &q)) == 0);
-    CHECK(q.trianglesCulled + q.facingAway + q.outside + q.invalid + q.drawn == q.triangles);
+    CHECK(q.trianglesCulled + q.facingAway + q.outside + q.hidden + q.invalid + q.drawn == q.triangles);
     CHECK(q.drawn == 0);
   }
 }

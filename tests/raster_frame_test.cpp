@@ -160,7 +160,7 @@ TEST_CASE("frame: statistics account for every triangle") {
       const Statistics& q = rasterizer.statistics();
       INFO("seed " << seed);
       CHECK(q.triangles == 3 * s.meshes[0].view.triangleCount());
-      CHECK(q.trianglesCulled + q.facingAway + q.outside + q.invalid + q.drawn == q.triangles);
+      CHECK(q.trianglesCulled + q.facingAway + q.outside + q.hidden + q.invalid + q.drawn == q.triangles);
       if (!skip) CHECK(q.trianglesCulled == 0);
     }
   }
