@@ -10,7 +10,7 @@ namespace obscura::raster {
 // A sphere in object space reaches into the view (or may).
 bool sphereVisible(const View& view, const Draw& draw, const glm::vec3& center, float radius);
 
-// Some triangle of the cluster may face the eye. Always true for what has two sides.
+// Some triangle of the cluster may face the eye, or away from it for Draw::away. Always true for what has two sides.
 bool clusterFacesEye(const Draw& draw, const Cluster& cluster);
 
 }  // namespace obscura::raster

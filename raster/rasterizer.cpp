@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "obscura/raster/cull.h"
+#include "obscura/raster/depth_layers.h"
 #include "obscura/raster/float_environment.h"
 #include "obscura/raster/parallel.h"
 #include "obscura/raster/resolve.h"
@@ -23,7 +24,7 @@ namespace {
 struct Worker {
   Statistics statistics;
   TransformedVertices vertices;
-  TileBuffers tile;
+  TileBuffers tile, behind;
 };
 
 double millisecondsSince(std::chrono::steady_clock::time_point start) {
@@ -36,6 +37,14 @@ int bitsOfTile(int tile) {
   throw std::invalid_argument("obscura raster: tile of " + std::to_string(tile) + " pixels, not 16, 32 or 64");
 }
 
+// Single-sided draws once more, to set up what faces away.
+std::vector<Draw> awayDraws(const std::vector<Draw>& draws) {
+  std::vector<Draw> away;
+  for (const Draw& d : draws)
+    if (!d.material->doubleSided) away.emplace_back(d).away = true;
+  return away;
+}
+
 }  // namespace
 
 struct Rasterizer::State {
@@ -45,15 +54,15 @@ struct Rasterizer::State {
   Parallel parallel;
   SrgbTable srgb;
   std::vector<std::unique_ptr<Worker>> workers;
-  std::vector<Bins> bins;  // one per worker, contiguous for the tiles
+  std::vector<Bins> bins, awayBins;  // one per worker, contiguous for the tiles
   Statistics statistics;
   Timings timings;
 
   explicit State(const Settings& s)
       : settings(s), target(chooseTarget(s.target)), tileBits(bitsOfTile(s.tile)), parallel(s.threads) {}
 
-  void setupClusters(const View& view, const std::vector<Draw>& draws, const TileGrid& grid);
-  void rasterTiles(const SurfaceContext& context, const TileGrid& grid, GBuffer& out);
+  void setupClusters(const View& view, const std::vector<Draw>& draws, const TileGrid& grid, std::vector<Bins>& bins);
+  void rasterTiles(const SurfaceContext& context, const TileGrid& grid, const PlaneSet& planes, GBuffer& out);
 };
 
 Rasterizer::Rasterizer(const Settings& settings) {
@@ -66,7 +75,8 @@ Rasterizer& Rasterizer::operator=(Rasterizer&&) noexcept = default;
 const Statistics& Rasterizer::statistics() const { return state_->statistics; }
 const Timings& Rasterizer::timings() const { return state_->timings; }
 
-void Rasterizer::State::setupClusters(const View& view, const std::vector<Draw>& draws, const TileGrid& grid) {
+void Rasterizer::State::setupClusters(const View& view, const std::vector<Draw>& draws, const TileGrid& grid,
+                                      std::vector<Bins>& bins) {
   // Clusters of all visible instances, numbered through: first[k] is the number of draw k's first.
   std::vector<const Draw*> visible;
   std::vector<size_t> first;
@@ -113,30 +123,41 @@ void Rasterizer::State::setupClusters(const View& view, const std::vector<Draw>&
   });
 }
 
-void Rasterizer::State::rasterTiles(const SurfaceContext& context, const TileGrid& grid, GBuffer& out) {
+void Rasterizer::State::rasterTiles(const SurfaceContext& context, const TileGrid& grid, const PlaneSet& planes, GBuffer& out) {
+  const View& view = *context.view;
+  const bool depths = planes.depthsAlone();
   parallel.forRanges(size_t(grid.count()), 1, [&](size_t begin, size_t end, int index) {
     Worker& worker = *workers[size_t(index)];
     for (size_t t = begin; t < end; ++t) {
-      const bool covered = rasterTile(context, grid, int(t), bins, settings.skip, worker.tile, target);
+      const bool covered = rasterTile(context, grid, int(t), bins, depths ? Keep::Key : Keep::Visibility, settings.skip,
+                                      worker.tile, target);
       ++worker.statistics.tiles;
       worker.statistics.tilesEmpty += !covered;
-      resolveTile(context, worker.tile, covered, out, target);
+      if (!depths) resolveTile(context, worker.tile, covered, out, target);
+      else if (planes.depth) storeTileDepth(view, worker.tile, covered, out.depth, target);
+      auto layer = [&](LayerBehind which, Span<const Bins> from, Plane<float>& plane) {
+        limitTile(view, worker.tile, covered, which, planes.separation, worker.behind, target);
+        const bool found = rasterTile(context, grid, int(t), from, Keep::KeyWithinLimit, settings.skip, worker.behind, target);
+        storeTileDepth(view, worker.behind, found, plane, target);
+      };
+      if (planes.depth2) layer(LayerBehind::Second, bins, out.depth2);
+      if (planes.depthBack) layer(LayerBehind::Back, awayBins, out.depthBack);
     }
   });
 }
 
 void Rasterizer::render(const DrawList& list, const Camera& camera, int width, int height, const PlaneSet& planes, GBuffer& out) {
   checkArguments(list, camera, width, height);
+  checkPlanes(planes);
   const FloatEnvironment environment;
   State& s = *state_;
   const auto start = std::chrono::steady_clock::now();
   if (out.width != width || out.height != height || !out.has(planes)) out = GBuffer(width, height, planes);
-  s.statistics = {};
   if (s.workers.empty()) {
     s.bins.resize(size_t(s.parallel.workers()));
+    s.awayBins.resize(size_t(s.parallel.workers()));
     for (int i = 0; i < s.parallel.workers(); ++i) s.workers.push_back(std::make_unique<Worker>());
   }
-  for (auto& w : s.workers) w->statistics = {};
 
   const View view = makeView(camera, width, height);
   std::vector<Draw> draws = makeDraws(list, camera);
@@ -149,12 +170,31 @@ void Rasterizer::render(const DrawList& list, const Camera& camera, int width, i
   }
   const TileGrid grid(width, height, s.tileBits);
   const SurfaceContext context{&view, draws, list.textures, s.srgb.linear};
-  s.setupClusters(view, draws, grid);
+  if (planes.depthBack) s.setupClusters(view, awayDraws(draws), grid, s.awayBins);
+  s.statistics = {};  // counts what can be seen
+  for (auto& w : s.workers) w->statistics = {};
+  s.setupClusters(view, draws, grid, s.bins);
   s.timings.setupMs = millisecondsSince(start);
   const auto tilesStart = std::chrono::steady_clock::now();
-  s.rasterTiles(context, grid, out);
+  s.rasterTiles(context, grid, planes, out);
   s.timings.tilesMs = millisecondsSince(tilesStart);
   for (const auto& w : s.workers) s.statistics.add(w->statistics);
+}
+
+void Rasterizer::renderDepth(const DrawList& list, const Camera& camera, int width, int height, Plane<float>& depth) {
+  struct Lent {  // given back even if render() throws
+    Plane<float>& plane;
+    GBuffer g;
+    explicit Lent(Plane<float>& p) : plane(p) {
+      g.width = p.width();
+      g.height = p.height();
+      g.depth = std::move(p);
+    }
+    ~Lent() { plane = std::move(g.depth); }
+  } lent(depth);
+  PlaneSet planes;
+  planes.depth = true;
+  render(list, camera, width, height, planes, lent.g);
 }
 
 }  // namespace obscura::raster

@@ -57,7 +57,7 @@ HWY_INLINE PixelVector pixelVector(const Blocks& t, int first) {
   return v;
 }
 
-template <bool kMasked>
+template <Keep kKeep, bool kMasked>
 HWY_INLINE void fillBlock(const SurfaceContext& context, const Blocks& t, const PixelVector& v, int column, int row, TileBuffers& out) {
   const DF d;
   const DI di;
@@ -70,20 +70,25 @@ HWY_INLINE void fillBlock(const SurfaceContext& context, const Blocks& t, const 
   VF key = hn::Add(hn::Set(d, t.key0), hn::Add(hn::Mul(hn::Set(d, t.xGradient), x), hn::Mul(hn::Set(d, t.yGradient), y)));
   key = hn::IfThenElse(hn::Gt(key, keyMin), key, keyMin);
   key = hn::IfThenElse(hn::Lt(key, keyMax), key, keyMax);
-  const VU id = hn::Set(du, t.id);
   const VF oldKey = hn::Load(d, out.key + at);
-  const VU oldId = hn::Load(du, out.id + at);
-  const MF nearer = hn::Or(hn::Gt(key, oldKey), hn::And(hn::Eq(key, oldKey), hn::RebindMask(d, hn::Lt(id, oldId))));
+  MF nearer = hn::Gt(key, oldKey);
+  const VU id = hn::Set(du, t.id);
+  VU oldId = id;
+  if constexpr (kKeep == Keep::Visibility) {
+    oldId = hn::Load(du, out.id + at);
+    nearer = hn::Or(nearer, hn::And(hn::Eq(key, oldKey), hn::RebindMask(d, hn::Lt(id, oldId))));
+  }
+  if constexpr (kKeep == Keep::KeyWithinLimit) nearer = hn::And(nearer, hn::Le(key, hn::Load(d, out.limit + at)));
   MF wins = hn::And(nearer, hn::RebindMask(d, inside));
   if (kMasked && !hn::AllFalse(d, wins)) {
     const VI px = hn::Add(v.lx, hn::Set(di, out.x + (t.x + column) * kBlock)), py = hn::Add(v.ly, hn::Set(di, out.y + (t.y + row) * kBlock));
     wins = alphaTest(context, t.id, px, py, wins);
   }
   hn::Store(hn::IfThenElse(wins, key, oldKey), d, out.key + at);
-  hn::Store(hn::IfThenElse(hn::RebindMask(du, wins), id, oldId), du, out.id + at);
+  if constexpr (kKeep == Keep::Visibility) hn::Store(hn::IfThenElse(hn::RebindMask(du, wins), id, oldId), du, out.id + at);
 }
 
-template <bool kMasked>
+template <Keep kKeep, bool kMasked>
 HWY_INLINE void fill(const SurfaceContext& context, const Blocks& t, TileBuffers& out) {
   const DI di;
   constexpr int kLanesPerBlock = kBlock * kBlock;
@@ -92,7 +97,7 @@ HWY_INLINE void fill(const SurfaceContext& context, const Blocks& t, TileBuffers
     for (int first = 0; first < kLanesPerBlock; first += lanes) {
       const PixelVector v = pixelVector(t, first);
       for (int row = 0; row < t.rows; ++row)
-        for (int column = 0; column < t.columns; ++column) fillBlock<kMasked>(context, t, v, column, row, out);
+        for (int column = 0; column < t.columns; ++column) fillBlock<kKeep, kMasked>(context, t, v, column, row, out);
     }
     return;
   }
@@ -113,23 +118,25 @@ HWY_INLINE void fill(const SurfaceContext& context, const Blocks& t, TileBuffers
     }
     for (int first = 0; count > 0 && first < kLanesPerBlock; first += lanes) {
       const PixelVector v = pixelVector(t, first);
-      for (int i = 0; i < count; ++i) fillBlock<kMasked>(context, t, v, touched[i], row, out);
+      for (int i = 0; i < count; ++i) fillBlock<kKeep, kMasked>(context, t, v, touched[i], row, out);
     }
   }
 }
 
 // All within one block.
+template <Keep kKeep>
 HWY_INLINE void rasterSingle(const SurfaceContext& context, const SmallTriangle& t, TileBuffers& out) {
   const int a0 = lowerHalf(t.a), a1 = upperHalf(t.a), b0 = lowerHalf(t.b), b1 = upperHalf(t.b);
   const Blocks c{{t.e[0], t.e[1], t.e[2]}, {a0, a1, -a0 - a1}, {b0, b1, -b0 - b1}, lowerHalf(t.block) - (out.x >> kBlockBits),
        upperHalf(t.block) - (out.y >> kBlockBits), 1, 1, t.key0, t.xGradient, t.yGradient, t.keyMin, t.keyMax, t.xFromP0, t.yFromP0, t.id};
   for (int first = 0; first < kBlock * kBlock; first += int(hn::Lanes(DF()))) {
     const PixelVector v = pixelVector(c, first);
-    if (HWY_UNLIKELY(t.masked)) fillBlock<true>(context, c, v, 0, 0, out);
-    else fillBlock<false>(context, c, v, 0, 0, out);
+    if (HWY_UNLIKELY(t.masked)) fillBlock<kKeep, true>(context, c, v, 0, 0, out);
+    else fillBlock<kKeep, false>(context, c, v, 0, 0, out);
   }
 }
 
+template <Keep kKeep>
 HWY_INLINE void rasterSmall(const SurfaceContext& context, const SmallTriangle& t, TileBuffers& out) {
   Blocks c;
   const int x = lowerHalf(t.block) - (out.x >> kBlockBits), y = upperHalf(t.block) - (out.y >> kBlockBits);
@@ -145,9 +152,10 @@ HWY_INLINE void rasterSmall(const SurfaceContext& context, const SmallTriangle& 
   c.xFromP0 = t.xFromP0 + float(dx * kSub);
   c.yFromP0 = t.yFromP0 + float(dy * kSub);
   c.id = t.id;
-  HWY_UNLIKELY(t.masked) ? fill<true>(context, c, out) : fill<false>(context, c, out);
+  HWY_UNLIKELY(t.masked) ? fill<kKeep, true>(context, c, out) : fill<kKeep, false>(context, c, out);
 }
 
+template <Keep kKeep>
 HWY_INLINE void rasterLarge(const SurfaceContext& context, const LargeTriangle& t, TileBuffers& out) {
   Blocks c;
   const int x0 = std::max(t.x0, out.x), y0 = std::max(t.y0, out.y);
@@ -167,17 +175,26 @@ HWY_INLINE void rasterLarge(const SurfaceContext& context, const LargeTriangle& 
   c.xFromP0 = float(context.view->xCenterSub(x) - t.p0x);
   c.yFromP0 = float(context.view->yCenterSub(y) - t.p0y);
   c.id = t.id;
-  HWY_UNLIKELY(t.masked) ? fill<true>(context, c, out) : fill<false>(context, c, out);
+  HWY_UNLIKELY(t.masked) ? fill<kKeep, true>(context, c, out) : fill<kKeep, false>(context, c, out);
 }
 
-void RasterTile(const SurfaceContext& context, int tile, Span<const Bins> bins, TileBuffers& out) {
+template <Keep kKeep>
+HWY_NOINLINE void rasterBins(const SurfaceContext& context, int tile, Span<const Bins> bins, TileBuffers& out) {
   const size_t pixels = size_t(out.columns * ((out.height + kBlock - 1) >> kBlockBits)) << (2 * kBlockBits);
   std::fill_n(out.key, pixels, -std::numeric_limits<float>::infinity());
-  std::fill_n(out.id, pixels, kNoTriangle);
+  if (kKeep == Keep::Visibility) std::fill_n(out.id, pixels, kNoTriangle);
   for (const Bins& b : bins) {
-    for (uint32_t index : b.large(tile)) rasterLarge(context, b.triangle(index), out);
-    for (const SmallTriangle& t : b.small(tile)) rasterSmall(context, t, out);
-    for (const SmallTriangle& t : b.single(tile)) rasterSingle(context, t, out);
+    for (uint32_t index : b.large(tile)) rasterLarge<kKeep>(context, b.triangle(index), out);
+    for (const SmallTriangle& t : b.small(tile)) rasterSmall<kKeep>(context, t, out);
+    for (const SmallTriangle& t : b.single(tile)) rasterSingle<kKeep>(context, t, out);
+  }
+}
+
+void RasterTile(const SurfaceContext& context, int tile, Span<const Bins> bins, Keep keep, TileBuffers& out) {
+  switch (keep) {
+    case Keep::Visibility: return rasterBins<Keep::Visibility>(context, tile, bins, out);
+    case Keep::Key: return rasterBins<Keep::Key>(context, tile, bins, out);
+    case Keep::KeyWithinLimit: return rasterBins<Keep::KeyWithinLimit>(context, tile, bins, out);
   }
 }
 
@@ -192,15 +209,15 @@ namespace obscura::raster {
 
 HWY_EXPORT(RasterTile);
 
-bool rasterTile(const SurfaceContext& context, const TileGrid& grid, int tile, Span<const Bins> bins, bool skipEmpty,
-                TileBuffers& out, Target target) {
+bool rasterTile(const SurfaceContext& context, const TileGrid& grid, int tile, Span<const Bins> bins, Keep keep,
+                bool skipEmpty, TileBuffers& out, Target target) {
   out.x = (tile % grid.columns) << grid.tileBits;
   out.y = (tile / grid.columns) << grid.tileBits;
   out.width = std::min(1 << grid.tileBits, grid.width - out.x);
   out.height = std::min(1 << grid.tileBits, grid.height - out.y);
   out.columns = (1 << grid.tileBits) >> kBlockBits;
   if (skipEmpty && std::all_of(bins.begin(), bins.end(), [&](const Bins& b) { return b.empty(tile); })) return false;
-  OBSCURA_DISPATCH(RasterTile, target)(context, tile, bins, out);
+  OBSCURA_DISPATCH(RasterTile, target)(context, tile, bins, keep, out);
   return true;
 }
 

@@ -1,5 +1,5 @@
 // In:  the bins of one tile.
-// Out: depth key and triangle id per pixel of the tile (the visibility buffer).
+// Out: depth key and triangle id per pixel of the tile (the visibility buffer), or the key alone.
 #pragma once
 
 #include "obscura/raster/bins.h"
@@ -21,7 +21,8 @@ static_assert(kEdgeLimit + 2ll * ((1 << kMaxTileBits) - 1) * 2 * kGuardSub < (in
 struct TileBuffers {
   static constexpr int kPixels = 1 << (2 * kMaxTileBits);
   alignas(64) float key[kPixels];
-  alignas(64) uint32_t id[kPixels];         // kNoTriangle where nothing was drawn
+  alignas(64) uint32_t id[kPixels];         // kNoTriangle where nothing was drawn; of Keep::Visibility
+  alignas(64) float limit[kPixels];         // of Keep::KeyWithinLimit, see depth_layers.h
   int x = 0, y = 0, width = 0, height = 0;  // of the tile, inside the image
   int columns = 0;                          // blocks in a row
 
@@ -32,10 +33,14 @@ struct TileBuffers {
   }
 };
 
+// What is kept of a pixel's winner: key and id (the visibility buffer); the key alone, for frames of nothing but depth;
+// or the key alone, and only up to TileBuffers::limit, for the layers behind the first. Alpha is tested in all three.
+enum class Keep { Visibility, Key, KeyWithinLimit };
+
 // The winner of a pixel is the triangle with the larger key, on equal keys the one with the smaller id, so the order
 // in which triangles and bins come does not matter. With skipEmpty, returns false and leaves `out` unspecified but for
-// its box if the tile has no triangles.
-bool rasterTile(const SurfaceContext& context, const TileGrid& grid, int tile, Span<const Bins> bins, bool skipEmpty,
-                TileBuffers& out, Target target);
+// its box and limit if the tile has no triangles.
+bool rasterTile(const SurfaceContext& context, const TileGrid& grid, int tile, Span<const Bins> bins, Keep keep,
+                bool skipEmpty, TileBuffers& out, Target target);
 
 }  // namespace obscura::raster
