@@ -61,7 +61,7 @@ struct Rasterizer::State {
   explicit State(const Settings& s)
       : settings(s), target(chooseTarget(s.target)), tileBits(bitsOfTile(s.tile)), parallel(s.threads) {}
 
-  void setupClusters(const View& view, const std::vector<Draw>& draws, const TileGrid& grid, std::vector<Bins>& bins);
+  void setupClusters(const View& view, const std::vector<Draw>& draws, const TileGrid& grid, std::vector<Bins>& into);
   void rasterTiles(const SurfaceContext& context, const TileGrid& grid, const PlaneSet& planes, GBuffer& out);
 };
 
@@ -76,7 +76,7 @@ const Statistics& Rasterizer::statistics() const { return state_->statistics; }
 const Timings& Rasterizer::timings() const { return state_->timings; }
 
 void Rasterizer::State::setupClusters(const View& view, const std::vector<Draw>& draws, const TileGrid& grid,
-                                      std::vector<Bins>& bins) {
+                                      std::vector<Bins>& into) {
   // Clusters of all visible instances, numbered through: first[k] is the number of draw k's first.
   std::vector<const Draw*> visible;
   std::vector<size_t> first;
@@ -94,7 +94,7 @@ void Rasterizer::State::setupClusters(const View& view, const std::vector<Draw>&
     count += draw.clusters->clusters.size();
   }
   statistics.clusters += count;
-  for (Bins& b : bins) b.reset(grid);
+  for (Bins& b : into) b.reset(grid);
   constexpr size_t kClustersPerTask = 32;
   parallel.forRanges(count, kClustersPerTask, [&](size_t begin, size_t end, int index) {
     Worker& worker = *workers[size_t(index)];
@@ -118,7 +118,7 @@ void Rasterizer::State::setupClusters(const View& view, const std::vector<Draw>&
         skipped();  // all vertices on the same outer side of the image
         continue;
       }
-      setupCluster(view, draw, cluster, worker.vertices, bins[size_t(index)], worker.statistics, target);
+      setupCluster(view, draw, cluster, worker.vertices, into[size_t(index)], worker.statistics, target);
     }
   });
 }

@@ -161,6 +161,41 @@ TEST_CASE("layers: a closed box ends at its back wall, seen from outside and fro
   }
 }
 
+TEST_CASE("layers: clusters that face the eye are skipped for back faces, and no others") {
+  TestScene s = emptyScene();
+  TestMesh& m = s.addMesh();
+  constexpr int kCells = 16;  // a side of each of a cube's faces, blown up to a ball; four rows are a cluster with a cone
+  for (int axis = 0; axis < 3; ++axis)
+    for (float side : {-1.f, 1.f})
+      for (int row = 0; row < kCells; ++row)
+        for (int column = 0; column < kCells; ++column) {
+          const auto corner = [&](int du, int dv) {
+            glm::vec3 p(0);
+            p[axis] = side;
+            p[(axis + 1) % 3] = side * (2 * float(column + du) / kCells - 1);
+            p[(axis + 2) % 3] = 2 * float(row + dv) / kCells - 1;
+            return p / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
+          };
+          TestScene::addQuad(m, corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1));
+        }
+  glm::dmat4 place(1);
+  place[3] = {0, 0, -3, 1};
+  s.place(m, 0, place);
+  int cones = 0;
+  for (const Cluster& c : m.clusters.clusters) cones += c.coneCos > 0.3f;
+  CHECK(cones > 10);
+  for (int turn = 0; turn < 4; ++turn) {  // the eye in front of it, beside it and in its middle
+    s.camera.viewFromWorld = lookAt({turn == 1 ? 2 : 0, turn == 2 ? 2 : 0, turn == 3 ? -3 : 0}, {0, 0, -3.5}, {0, 1, 0});
+    checkAgainstReference(s);
+  }
+  s.camera.viewFromWorld = glm::dmat4(1);
+  const GBuffer g = layers(s, 0.1f);
+  CHECK(g.depth.at(20, 20) == Approx(2).margin(0.01));
+  CHECK(g.depthBack.at(20, 20) == Approx(4).margin(0.01));
+  for (int y = 0; y < g.height; ++y)  // no hole: a ball ends wherever it begins
+    for (int x = 0; x < g.width; ++x) CHECK((g.depth.at(x, y) < kInfinity) == (g.depthBack.at(x, y) < kInfinity));
+}
+
 TEST_CASE("layers: double-sided surfaces have no back, but a far side that is the second layer") {
   TestScene s = emptyScene();
   s.materials[0].doubleSided = true;
