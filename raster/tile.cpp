@@ -70,15 +70,17 @@ HWY_INLINE void fillBlock(const SurfaceContext& context, const Blocks& t, const 
   VF key = hn::Add(hn::Set(d, t.key0), hn::Add(hn::Mul(hn::Set(d, t.xGradient), x), hn::Mul(hn::Set(d, t.yGradient), y)));
   key = hn::IfThenElse(hn::Gt(key, keyMin), key, keyMin);
   key = hn::IfThenElse(hn::Lt(key, keyMax), key, keyMax);
-  const VF oldKey = hn::Load(d, out.key + at);
-  MF nearer = hn::Gt(key, oldKey);
   const VU id = hn::Set(du, t.id);
+  const VF oldKey = hn::Load(d, out.key + at);
   VU oldId = id;
+  MF nearer;
   if constexpr (kKeep == Keep::Visibility) {
     oldId = hn::Load(du, out.id + at);
-    nearer = hn::Or(nearer, hn::And(hn::Eq(key, oldKey), hn::RebindMask(d, hn::Lt(id, oldId))));
+    nearer = hn::Or(hn::Gt(key, oldKey), hn::And(hn::Eq(key, oldKey), hn::RebindMask(d, hn::Lt(id, oldId))));
+  } else {
+    nearer = hn::Gt(key, oldKey);
+    if constexpr (kKeep == Keep::KeyWithinLimit) nearer = hn::And(nearer, hn::Le(key, hn::Load(d, out.limit + at)));
   }
-  if constexpr (kKeep == Keep::KeyWithinLimit) nearer = hn::And(nearer, hn::Le(key, hn::Load(d, out.limit + at)));
   MF wins = hn::And(nearer, hn::RebindMask(d, inside));
   if (kMasked && !hn::AllFalse(d, wins)) {
     const VI px = hn::Add(v.lx, hn::Set(di, out.x + (t.x + column) * kBlock)), py = hn::Add(v.ly, hn::Set(di, out.y + (t.y + row) * kBlock));

@@ -334,6 +334,20 @@ TEST_CASE("depth alone: a G-buffer that is used again holds no planes of the fra
   CHECK(g.triangle.empty());
 }
 
+TEST_CASE("gbuffer: it has the planes that it was made with, and no others") {
+  for (bool PlaneSet::*plane : {&PlaneSet::depth, &PlaneSet::normal, &PlaneSet::albedo, &PlaneSet::emissive,
+                                &PlaneSet::position, &PlaneSet::triangle, &PlaneSet::instance, &PlaneSet::material,
+                                &PlaneSet::depth2, &PlaneSet::depthBack}) {
+    PlaneSet one, others = kAllLayers;
+    one.*plane = true;
+    others.*plane = false;
+    CHECK(GBuffer(4, 4, one).has(one));
+    CHECK(!GBuffer(4, 4, one).has({}));
+    CHECK(!GBuffer(4, 4, others).has(kAllLayers));
+    CHECK(GBuffer(4, 4, others).has(others));
+  }
+}
+
 TEST_CASE("layers: a separation that is none is refused and named") {
   const TestScene s = soupScene(4);
   GBuffer g;
