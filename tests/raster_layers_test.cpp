@@ -196,6 +196,24 @@ TEST_CASE("layers: clusters that face the eye are skipped for back faces, and no
     for (int x = 0; x < g.width; ++x) CHECK((g.depth.at(x, y) < kInfinity) == (g.depthBack.at(x, y) < kInfinity));
 }
 
+TEST_CASE("layers: where a cluster is too wide for its planes to tell, back faces are found exactly") {
+  TestScene s = emptyScene();
+  addBox(s, {0, 0, -4}, 1);
+  TestMesh& m = s.meshes[0];
+  for (const glm::vec3& p : {glm::vec3(4e6f, 0, 0), glm::vec3(4e6f, 1, 0), glm::vec3(4e6f, 0, 1)}) {
+    m.indices.push_back(uint32_t(m.positions.size()));
+    m.positions.push_back(p);
+  }
+  const glm::dmat4 place = s.instances[0].worldFromObject;
+  m.clusters = {};
+  s.instances.clear();
+  s.place(m, 0, place);
+  CHECK(m.clusters.clusters[0].radius > 1e6f);
+  const GBuffer g = layers(s, 0.5f);
+  CHECK(g.depth.at(20, 20) == 3);
+  CHECK(g.depthBack.at(20, 20) == 5);
+}
+
 TEST_CASE("layers: double-sided surfaces have no back, but a far side that is the second layer") {
   TestScene s = emptyScene();
   s.materials[0].doubleSided = true;
