@@ -57,8 +57,9 @@ HWY_INLINE PixelVector pixelVector(const Blocks& t, int first) {
   return v;
 }
 
-template <Keep kKeep, bool kMasked>
-HWY_INLINE void fillBlock(const SurfaceContext& context, const Blocks& t, const PixelVector& v, int column, int row, TileBuffers& out) {
+template <Keep kKeep>
+HWY_INLINE void fillBlock(const SurfaceContext& context, const Blocks& t, bool masked, const PixelVector& v, int column, int row,
+                          TileBuffers& out) {
   const DF d;
   const DI di;
   const DU du;
@@ -82,7 +83,7 @@ HWY_INLINE void fillBlock(const SurfaceContext& context, const Blocks& t, const 
     if constexpr (kKeep == Keep::KeyWithinLimit) nearer = hn::And(nearer, hn::Le(key, hn::Load(d, out.limit + at)));
   }
   MF wins = hn::And(nearer, hn::RebindMask(d, inside));
-  if (kMasked && !hn::AllFalse(d, wins)) {
+  if (masked && !hn::AllFalse(d, wins)) {
     const VI px = hn::Add(v.lx, hn::Set(di, out.x + (t.x + column) * kBlock)), py = hn::Add(v.ly, hn::Set(di, out.y + (t.y + row) * kBlock));
     wins = alphaTest(context, t.id, px, py, wins);
   }
@@ -90,8 +91,8 @@ HWY_INLINE void fillBlock(const SurfaceContext& context, const Blocks& t, const 
   if constexpr (kKeep == Keep::Visibility) hn::Store(hn::IfThenElse(hn::RebindMask(du, wins), id, oldId), du, out.id + at);
 }
 
-template <Keep kKeep, bool kMasked>
-HWY_INLINE void fill(const SurfaceContext& context, const Blocks& t, TileBuffers& out) {
+template <Keep kKeep>
+HWY_INLINE void fillBlocks(const SurfaceContext& context, const Blocks& t, bool masked, TileBuffers& out) {
   const DI di;
   constexpr int kLanesPerBlock = kBlock * kBlock;
   const int lanes = int(hn::Lanes(di));
@@ -99,7 +100,7 @@ HWY_INLINE void fill(const SurfaceContext& context, const Blocks& t, TileBuffers
     for (int first = 0; first < kLanesPerBlock; first += lanes) {
       const PixelVector v = pixelVector(t, first);
       for (int row = 0; row < t.rows; ++row)
-        for (int column = 0; column < t.columns; ++column) fillBlock<kKeep, kMasked>(context, t, v, column, row, out);
+        for (int column = 0; column < t.columns; ++column) fillBlock<kKeep>(context, t, masked, v, column, row, out);
     }
     return;
   }
@@ -120,9 +121,23 @@ HWY_INLINE void fill(const SurfaceContext& context, const Blocks& t, TileBuffers
     }
     for (int first = 0; count > 0 && first < kLanesPerBlock; first += lanes) {
       const PixelVector v = pixelVector(t, first);
-      for (int i = 0; i < count; ++i) fillBlock<kKeep, kMasked>(context, t, v, touched[i], row, out);
+      for (int i = 0; i < count; ++i) fillBlock<kKeep>(context, t, masked, v, touched[i], row, out);
     }
   }
+}
+
+template <Keep kKeep>
+HWY_NOINLINE void fillApart(const SurfaceContext& context, const Blocks& t, bool masked, TileBuffers& out) {
+  fillBlocks<kKeep>(context, t, masked, out);
+}
+
+// Where ids are kept the loops are there twice for each caller, with masks and without; elsewhere once, which compiles in
+// half of the time.
+template <Keep kKeep>
+HWY_INLINE void fill(const SurfaceContext& context, const Blocks& t, bool masked, TileBuffers& out) {
+  if constexpr (kKeep != Keep::Visibility) fillApart<kKeep>(context, t, masked, out);
+  else if (HWY_UNLIKELY(masked)) fillBlocks<kKeep>(context, t, true, out);
+  else fillBlocks<kKeep>(context, t, false, out);
 }
 
 // All within one block.
@@ -133,8 +148,8 @@ HWY_INLINE void rasterSingle(const SurfaceContext& context, const SmallTriangle&
        upperHalf(t.block) - (out.y >> kBlockBits), 1, 1, t.key0, t.xGradient, t.yGradient, t.keyMin, t.keyMax, t.xFromP0, t.yFromP0, t.id};
   for (int first = 0; first < kBlock * kBlock; first += int(hn::Lanes(DF()))) {
     const PixelVector v = pixelVector(c, first);
-    if (HWY_UNLIKELY(t.masked)) fillBlock<kKeep, true>(context, c, v, 0, 0, out);
-    else fillBlock<kKeep, false>(context, c, v, 0, 0, out);
+    if (HWY_UNLIKELY(t.masked)) fillBlock<kKeep>(context, c, true, v, 0, 0, out);
+    else fillBlock<kKeep>(context, c, false, v, 0, 0, out);
   }
 }
 
@@ -154,7 +169,7 @@ HWY_INLINE void rasterSmall(const SurfaceContext& context, const SmallTriangle& 
   c.xFromP0 = t.xFromP0 + float(dx * kSub);
   c.yFromP0 = t.yFromP0 + float(dy * kSub);
   c.id = t.id;
-  HWY_UNLIKELY(t.masked) ? fill<kKeep, true>(context, c, out) : fill<kKeep, false>(context, c, out);
+  fill<kKeep>(context, c, t.masked, out);
 }
 
 template <Keep kKeep>
@@ -177,7 +192,7 @@ HWY_INLINE void rasterLarge(const SurfaceContext& context, const LargeTriangle& 
   c.xFromP0 = float(context.view->xCenterSub(x) - t.p0x);
   c.yFromP0 = float(context.view->yCenterSub(y) - t.p0y);
   c.id = t.id;
-  HWY_UNLIKELY(t.masked) ? fill<kKeep, true>(context, c, out) : fill<kKeep, false>(context, c, out);
+  fill<kKeep>(context, c, t.masked, out);
 }
 
 template <Keep kKeep>
