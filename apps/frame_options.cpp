@@ -24,17 +24,22 @@ std::optional<T> numberOf(std::string_view text) {
   return value;
 }
 
-std::optional<glm::dvec3> vectorOf(std::string_view text) {
-  glm::dvec3 v;
-  for (int c = 0; c < 3; ++c) {
-    const size_t comma = c < 2 ? text.find(',') : text.size();
-    if (comma == text.npos) return std::nullopt;
-    const std::optional<double> component = numberOf<double>(text.substr(0, comma));
-    if (!component) return std::nullopt;
-    v[c] = *component;
+// Exactly `count` numbers with commas between.
+bool readNumbers(std::string_view text, int count, double* out) {
+  for (int i = 0; i < count; ++i) {
+    const size_t comma = i + 1 < count ? text.find(',') : text.size();
+    if (comma == text.npos) return false;
+    const std::optional<double> number = numberOf<double>(text.substr(0, comma));
+    if (!number) return false;
+    out[i] = *number;
     text.remove_prefix(std::min(comma + 1, text.size()));
   }
-  return v;
+  return true;
+}
+
+std::optional<glm::dvec3> vectorOf(std::string_view text) {
+  glm::dvec3 v;
+  return readNumbers(text, 3, &v.x) ? std::optional(v) : std::nullopt;
 }
 
 // "r,g,b" is linear, "#rrggbb" is sRGB.
@@ -126,6 +131,15 @@ void addVector(CLI::App& app, const std::string& name, std::optional<glm::dvec3>
   })->group("View");
 }
 
+void addMatrix(CLI::App& app, const std::string& name, std::optional<glm::dmat4>& value, const std::string& what) {
+  addRead(app, name, "M0,...,M15", what, [&value](const std::string& text) {
+    glm::dmat4 m;
+    if (!readNumbers(text, 16, &m[0][0])) return false;
+    value = m;
+    return true;
+  })->group("View");
+}
+
 void addColor(CLI::App& app, const std::string& name, glm::vec3& value, const std::string& what) {
   addRead(app, name, "R,G,B|#RRGGBB", what + "; R,G,B are linear, #RRGGBB is sRGB [" + shown(value) + "]",
           [&value](const std::string& text) {
@@ -188,10 +202,17 @@ void addView(CLI::App& app, FrameOptions& o) {
             o.camera.yFovDegrees = numberOf<double>(text);
             return o.camera.yFovDegrees && *o.camera.yFovDegrees > 0 && *o.camera.yFovDegrees < 180;
           })->group("View");
+  addMatrix(app, "--view-matrix", o.camera.view,
+            "instead of all other cameras, with --projection-matrix: from world to view space, which looks along -z; 16 "
+            "numbers, column by column as in glTF");
+  addMatrix(app, "--projection-matrix", o.camera.projection,
+            "from view to clip space as in OpenGL, alike; perspective or orthographic, off-centre or not");
   addInteger(app, "--scene", 0, 1 << 30, o.scene, "which of the file's scenes [the default one]")
       ->type_name("INDEX")
       ->group("View");
   addColor(app, "--background", o.background, "colour where nothing is seen");
+  addLength(app, "--separation", false, o.separation, "how far behind what is seen the AOV depth2 begins",
+            shown(engine::kDefaultSeparation) + " x R")->group("View");
   addColor(app, "--ambient-light", o.ambientLight, "the light that comes from everywhere");
 }
 
@@ -268,6 +289,7 @@ engine::Result<ResolvedFrame> FrameOptions::resolve(const engine::Scene& in) con
   out.frame.transfer.radius = float(r);
   out.frame.transfer.bias = float(bias.value_or(engine::kDefaultBias * r));
   out.frame.transfer.filterThreshold = float(filterThreshold.value_or(engine::kDefaultFilterThreshold * r));
+  out.frame.separation = float(separation.value_or(engine::kDefaultSeparation * r));
   out.raster = raster;
   out.reference = reference;
   return out;

@@ -29,8 +29,9 @@ struct FrameOptions {
   engine::CameraRequest camera;
   glm::vec3 background{0}, ambientLight{1};  // linear
   post::Occlusion ambient = post::Occlusion::Transfer;
-  post::AmbientSettings transfer;                          // but for the three lengths below
+  post::AmbientSettings transfer;                          // but for three of the lengths below
   std::optional<double> radius, bias, filterThreshold;     // scene units; empty: a fraction of the scene's size
+  std::optional<double> separation;                        // of the second depth layer, alike
   raster::Settings raster;
   bool reference = false;
 

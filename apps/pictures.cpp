@@ -106,6 +106,8 @@ Planes planesOf(const Frame& frame, Aov aov) {
     case Aov::Triangle: add(p, frame.g.triangle); break;
     case Aov::Instance: add(p, frame.g.instance); break;
     case Aov::Material: add(p, frame.g.material); break;
+    case Aov::Depth2: add(p, frame.g.depth2); break;
+    case Aov::DepthBack: add(p, frame.g.depthBack); break;
   }
   return p;
 }
@@ -168,6 +170,8 @@ Image picture(const Frame& frame, Aov aov, int bits) {
     case Aov::Triangle: return engine::idPicture(frame.g.triangle);
     case Aov::Instance: return engine::idPicture(frame.g.instance);
     case Aov::Material: return engine::idPicture(frame.g.material);
+    case Aov::Depth2: return engine::depthPicture(frame.g.depth2);
+    case Aov::DepthBack: return engine::depthPicture(frame.g.depthBack);
   }
   return {};
 }

@@ -92,7 +92,7 @@ Result<std::vector<Aov>> aovsOf(const std::vector<std::string>& names) {
 bool needsTextures(const std::vector<Aov>& aovs) {
   return std::any_of(aovs.begin(), aovs.end(), [](Aov aov) {
     return aov != Aov::Depth && aov != Aov::Position && aov != Aov::Triangle && aov != Aov::Instance &&
-           aov != Aov::Material;
+           aov != Aov::Material && aov != Aov::Depth2 && aov != Aov::DepthBack;
   });
 }
 

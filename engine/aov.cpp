@@ -15,6 +15,8 @@ const std::vector<AovInfo>& allAovs() {
       {Aov::Triangle, "triangle", {"id"}, "number of the triangle, counted through the instances"},
       {Aov::Instance, "instance", {"id"}, "number of the instance, in the order of the node tree"},
       {Aov::Material, "material", {"id"}, "number of the material in the file"},
+      {Aov::Depth2, "depth2", {"Z"}, "depth of what lies behind, at least the separation farther; infinity where nothing does"},
+      {Aov::DepthBack, "depthback", {"Z"}, "depth of the nearest back face there, where what is seen ends"},
   };
   return all;
 }

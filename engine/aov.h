@@ -9,7 +9,8 @@
 
 namespace obscura::engine {
 
-enum class Aov : uint8_t { Color, Depth, Normal, Albedo, Emissive, Obscurance, Transfer, Position, Triangle, Instance, Material };
+enum class Aov : uint8_t { Color, Depth, Normal, Albedo, Emissive, Obscurance, Transfer, Position, Triangle, Instance, Material,
+                           Depth2, DepthBack };
 
 struct AovInfo {
   Aov aov;

@@ -1,6 +1,7 @@
 #include "obscura/engine/camera_choice.h"
 
 #include <cmath>
+#include <stdexcept>
 
 #include "obscura/raster/exact_math.h"
 
@@ -59,6 +60,15 @@ Result<raster::Camera> fileCamera(const SceneCamera& s, const CameraRequest& q, 
   return c;
 }
 
+Result<raster::Camera> matrixCamera(const CameraRequest& q) try {
+  if (!q.view || !q.projection) return usage("a view matrix and a projection matrix need each other");
+  if (q.eye || q.target || q.up || q.yFovDegrees || !q.name.empty())
+    return usage("a camera given by matrices and another one cannot be had at once");
+  return raster::cameraFromMatrices(*q.view, *q.projection);
+} catch (const std::invalid_argument& e) {
+  return usage(e.what());
+}
+
 }  // namespace
 
 double sceneSize(const Scene& scene) {
@@ -68,6 +78,7 @@ double sceneSize(const Scene& scene) {
 
 Result<raster::Camera> chooseCamera(const Scene& scene, const CameraRequest& q, int width, int height) {
   const double aspect = double(width) / double(height);
+  if (q.view || q.projection) return matrixCamera(q);
   if (q.yFovDegrees && !(*q.yFovDegrees > 0 && *q.yFovDegrees < 180)) return usage("the field of view must be between 0 and 180 degrees");
   const bool isFree = q.eye || q.target || q.up;
   if (isFree && !q.name.empty()) return usage("a camera of the file and one of your own cannot be had at once");

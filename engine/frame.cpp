@@ -25,8 +25,10 @@ bool emits(const Scene& scene) {
   });
 }
 
+bool wants(const FrameSettings& s, Aov aov) { return std::find(s.aovs.begin(), s.aovs.end(), aov) != s.aovs.end(); }
+
 Needs needsOf(const Scene& scene, const FrameSettings& s) {
-  auto wants = [&](Aov aov) { return std::find(s.aovs.begin(), s.aovs.end(), aov) != s.aovs.end(); };
+  const auto wants = [&](Aov aov) { return engine::wants(s, aov); };
   Needs n;
   n.color = wants(Aov::Color) || s.display;
   n.obscurance = wants(Aov::Obscurance) || (n.color && s.ambient == post::Occlusion::Obscurance);
@@ -40,6 +42,9 @@ Needs needsOf(const Scene& scene, const FrameSettings& s) {
   n.planes.triangle = wants(Aov::Triangle);
   n.planes.instance = wants(Aov::Instance);
   n.planes.material = wants(Aov::Material);
+  n.planes.depth2 = wants(Aov::Depth2);
+  n.planes.depthBack = wants(Aov::DepthBack);
+  n.planes.separation = s.separation;
   return n;
 }
 
@@ -49,6 +54,7 @@ const char* wrongSetting(const FrameSettings& s) {
   if (t.steps < 1 || t.steps > 4) return "steps must be 1 to 4";
   if (!(t.radius > 0 && t.radius < 1e30f)) return "the radius must be positive and finite";
   if (!(t.bias >= 0 && t.bias < 1e30f)) return "the bias must be 0 or more and finite";
+  if (wants(s, Aov::Depth2) && !(s.separation > 0 && s.separation < 1e30f)) return "the separation must be positive and finite";
   if (!(t.filterThreshold > 0)) return "the filter threshold must be positive";
   for (int c = 0; c < 3; ++c)
     if (!(s.ambientLight[c] >= 0 && s.ambientLight[c] < 1e30f) || !(s.background[c] >= 0 && s.background[c] < 1e30f))

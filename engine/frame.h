@@ -26,6 +26,7 @@ struct FrameSettings {
   glm::vec3 background{0};        // linear
   std::vector<Aov> aovs = {Aov::Color};
   bool display = false;           // also the picture as sRGB bytes
+  float separation = 0.01f;       // of Aov::Depth2, scene units, see raster::GBuffer
 };
 
 struct FrameTimings {  // milliseconds; 0 for what was not needed

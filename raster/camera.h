@@ -28,4 +28,14 @@ Camera orthographic(double xMag, double yMag, double zNear, double zFar);
 // viewFromWorld of an eye that looks at target; where up is parallel to the view axis another up is taken.
 glm::dmat4 lookAt(glm::dvec3 eye, glm::dvec3 target, glm::dvec3 up);
 
+// From matrices as OpenGL has them, for column vectors and indexed [column][row]: clip = projection view (x, y, z, 1), seen
+// where |x|, |y|, |z| <= w. The view looks along -z and is affine: its last row is 0 0 0 1. The projection is
+//   perspective   last row 0 0 -k 0, k > 0; off-centre or not, the far plane at a distance or infinitely far away
+//   orthographic  last row 0 0 0 k, k > 0; off-centre or not
+// and either may have its depth reversed (near at z = w). A far plane beyond 1e30 counts as none. Throws
+// std::invalid_argument, naming what cannot be: numbers that are not finite or beyond 1e30, a view that is not affine or
+// has no inverse, a projection that shears, tilts, mirrors, looks along +z, moves the eye or has an oblique near plane,
+// a near plane that is not in front of the eye, an empty depth range.
+Camera cameraFromMatrices(const glm::dmat4& view, const glm::dmat4& projection);
+
 }  // namespace obscura::raster

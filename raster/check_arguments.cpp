@@ -50,6 +50,11 @@ void checkMesh(const MeshView& m, size_t instance) {
 
 }  // namespace
 
+void checkPlanes(const PlaneSet& planes) {
+  if (planes.depth2 && !(planes.separation > 0 && std::isfinite(planes.separation)))
+    fail("separation ", planes.separation, " of depth2, not positive and finite");
+}
+
 void checkArguments(const DrawList& list, const Camera& c, int width, int height) {
   if (width < 1 || height < 1 || width > kMaxImageSize || height > kMaxImageSize)
     fail("image of ", width, " x ", height, " pixels, not 1 ... ", kMaxImageSize);

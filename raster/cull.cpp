@@ -89,7 +89,9 @@ bool clusterFacesEye(const Draw& draw, const Cluster& cluster) {
   const float square = d.x * d.x + d.y * d.y + d.z * d.z;
   if (!(square > 1e-30f && square < 1e30f)) return true;
   const float distance = std::sqrt(square);
-  const float along = d.x * cluster.coneAxis.x + d.y * cluster.coneAxis.y + d.z * cluster.coneAxis.z;
+  // Turning all normals round turns the axis round.
+  const float alongAxis = d.x * cluster.coneAxis.x + d.y * cluster.coneAxis.y + d.z * cluster.coneAxis.z;
+  const float along = draw.away ? -alongAxis : alongAxis;
   if (along <= 0) return true;
   // Every normal is within alpha of the axis, so its cosine with d is at least cos(theta + alpha) =
   // cos theta cos alpha - sin theta sin alpha; all faces are turned away if even that much exceeds the radius.

@@ -27,7 +27,7 @@ ScreenBound screenBound(const View& view, const ViewSphere& sphere);
 // The pixel centres between the vertices of a cluster, none of which needs clipping; exact.
 ScreenBound boundOf(const View& view, const TransformedVertices& vertices);
 
-// Some triangle of the cluster may face the eye. Always true for what has two sides.
+// Some triangle of the cluster may face the eye, or away from it for Draw::away. Always true for what has two sides.
 bool clusterFacesEye(const Draw& draw, const Cluster& cluster);
 
 }  // namespace obscura::raster

@@ -16,13 +16,15 @@ GBuffer::GBuffer(int w, int h, const PlaneSet& planes) : width(w), height(h) {
   make(planes.triangle, triangle);
   make(planes.instance, instance);
   make(planes.material, material);
+  make(planes.depth2, depth2);
+  make(planes.depthBack, depthBack);
 }
 
 bool GBuffer::has(const PlaneSet& planes) const {
-  return (!planes.depth || !depth.empty()) && (!planes.normal || !normal[0].empty()) &&
-         (!planes.albedo || !albedo[0].empty()) && (!planes.emissive || !emissive[0].empty()) &&
-         (!planes.position || !position[0].empty()) && (!planes.triangle || !triangle.empty()) &&
-         (!planes.instance || !instance.empty()) && (!planes.material || !material.empty());
+  return planes.depth != depth.empty() && planes.normal != normal[0].empty() && planes.albedo != albedo[0].empty() &&
+         planes.emissive != emissive[0].empty() && planes.position != position[0].empty() &&
+         planes.triangle != triangle.empty() && planes.instance != instance.empty() &&
+         planes.material != material.empty() && planes.depth2 != depth2.empty() && planes.depthBack != depthBack.empty();
 }
 
 }  // namespace obscura::raster

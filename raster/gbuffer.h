@@ -12,9 +12,26 @@ namespace obscura::raster {
 struct PlaneSet {
   bool depth = false, normal = false, albedo = false, emissive = false, position = false;
   bool triangle = false, instance = false, material = false;
+  bool depth2 = false, depthBack = false;
+  float separation = 0;  // of depth2: scene units, positive and finite; not read without it
+
+  // Nothing but depths: ids, normals and materials are not even kept per pixel, alpha is tested all the same.
+  bool depthsAlone() const {
+    return !(normal || albedo || emissive || position || triangle || instance || material);
+  }
 };
 
-// Empty pixels hold: depth infinity; normal, albedo, emissive and position 0; ids kNoTriangle.
+// Empty pixels hold: depths infinity; normal, albedo, emissive and position 0; ids kNoTriangle.
+//
+// Behind the first layer, which is what `depth` shows, there can be two more. Both are the largest depth key (view.h) up
+// to a limit that follows from the first layer's key, so they depend on no order, either:
+//   depth2     of what competes for the first layer: single-sided triangles that face the eye, double-sided ones, where
+//              alpha covers. The limit is the key of max(zView + separation, zView (1 + 2^-20)), in float: what is seen
+//              never counts again, however small the separation. Infinity where the first layer is empty.
+//   depthBack  of single-sided triangles that face away from the eye (both tests of setup.h with the sign turned), where
+//              alpha covers. The limit is the first layer's key itself: this is where the solid that is seen ends, as far
+//              as it is closed. Where the first layer is empty there is no limit: an eye inside a solid sees its wall.
+//              Double-sided triangles have no inside and do not count, though they can be the first layer.
 struct GBuffer {
   int width = 0, height = 0;
   Plane<float> depth;        // zView: distance along the view axis, scene units
@@ -25,10 +42,12 @@ struct GBuffer {
   Plane<uint32_t> triangle;  // id, see DrawList
   Plane<uint32_t> instance;  // index into DrawList::instances
   Plane<uint32_t> material;  // index into DrawList::materials
+  Plane<float> depth2;       // zView of the nearest surface at least `separation` behind the first
+  Plane<float> depthBack;    // zView of the nearest surface at or behind the first that is turned away
 
   GBuffer() = default;
   GBuffer(int width, int height, const PlaneSet& planes);
-  bool has(const PlaneSet& planes) const;  // all of these are there
+  bool has(const PlaneSet& planes) const;  // these are there, and no others
 };
 
 }  // namespace obscura::raster

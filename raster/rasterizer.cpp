@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "obscura/raster/cull.h"
+#include "obscura/raster/depth_layers.h"
 #include "obscura/raster/float_environment.h"
 #include "obscura/raster/occlusion.h"
 #include "obscura/raster/parallel.h"
@@ -34,7 +35,8 @@ struct Worker {
   Statistics statistics;
   std::vector<Candidate> candidates;
   TransformedVertices vertices;
-  TileMemory tile;
+  TileMemory tile, behind;
+  Plane<float> limit;  // of a tile
 };
 
 // Frames of fewer clusters are drawn in one round: rounds have a cost of their own.
@@ -52,6 +54,14 @@ int bitsOfTile(int tile) {
   throw std::invalid_argument("obscura raster: tile of " + std::to_string(tile) + " pixels, not 16, 32 or 64");
 }
 
+// Single-sided draws once more, to set up what faces away.
+std::vector<Draw> awayDraws(const std::vector<Draw>& draws) {
+  std::vector<Draw> away;
+  for (const Draw& d : draws)
+    if (!d.material->doubleSided) away.emplace_back(d).away = true;
+  return away;
+}
+
 }  // namespace
 
 struct Rasterizer::State {
@@ -61,11 +71,12 @@ struct Rasterizer::State {
   Parallel parallel;
   SrgbTable srgb;
   std::vector<std::unique_ptr<Worker>> workers;
-  std::vector<Bins> bins;  // one per worker, contiguous for the tiles
+  std::vector<Bins> bins, awayBins;  // one per worker, contiguous for the tiles
   Statistics statistics;
   Timings timings;
-  // Of frames that are drawn in rounds, front to back.
-  bool rounds = false;
+  TileGrid grid;
+  Keep keep = Keep::Visibility;
+  bool rounds = false;  // front to back; what follows belongs to them
   OcclusionMap occlusion;
   TileMemory kept;
   std::vector<uint8_t> started;  // tiles that hold something
@@ -73,18 +84,18 @@ struct Rasterizer::State {
   explicit State(const Settings& s)
       : settings(s), target(chooseTarget(s.target)), tileBits(bitsOfTile(s.tile)), parallel(s.threads) {}
 
-  void beginFrame(const TileGrid& grid, bool inRounds);
+  void beginFrame(bool inRounds);
   std::vector<const Draw*> visibleInstances(const View& view, const std::vector<Draw>& draws);
   std::vector<Candidate> findCandidates(const View& view, Span<const Draw* const> draws);
-  void setupClusters(const View& view, const TileGrid& grid, Span<const Candidate> candidates, bool again);
-  void drawRound(const SurfaceContext& context, const TileGrid& grid);
-  void finishTiles(const SurfaceContext& context, const TileGrid& grid, GBuffer& out);
+  void setupClusters(const View& view, Span<const Candidate> candidates, bool again, std::vector<Bins>& into);
+  void setupAway(const View& view, const std::vector<Draw>& draws);
+  void drawRound(const SurfaceContext& context);
+  void finishTiles(const SurfaceContext& context, const PlaneSet& planes, GBuffer& out);
+  void drawLayer(const SurfaceContext& context, const TileBuffers& first, bool covered, int index, LayerBehind layer,
+                 float separation, Worker& worker, Plane<float>& out);
   void skip(Statistics& s, uint64_t Statistics::*what, uint64_t triangles) {
     ++(s.*what);
     s.trianglesCulled += triangles;
-  }
-  bool anyBins(int tile) const {
-    return std::any_of(bins.begin(), bins.end(), [&](const Bins& b) { return !b.empty(tile); });
   }
   bool drawn = false;  // a round was: the map says something
 };
@@ -99,10 +110,9 @@ Rasterizer& Rasterizer::operator=(Rasterizer&&) noexcept = default;
 const Statistics& Rasterizer::statistics() const { return state_->statistics; }
 const Timings& Rasterizer::timings() const { return state_->timings; }
 
-void Rasterizer::State::beginFrame(const TileGrid& grid, bool inRounds) {
+void Rasterizer::State::beginFrame(bool inRounds) {
   rounds = inRounds;
   drawn = false;
-  for (Bins& b : bins) b.reset(grid);
   if (!rounds) return;
   occlusion.reset(grid.width, grid.height);
   kept.reserve(size_t(grid.count()), grid.tileBits);
@@ -173,8 +183,8 @@ std::vector<Candidate> Rasterizer::State::findCandidates(const View& view, Span<
 }
 
 // again: more has been drawn since the candidates were found.
-void Rasterizer::State::setupClusters(const View& view, const TileGrid& grid, Span<const Candidate> candidates, bool again) {
-  for (Bins& b : bins) b.reset(grid);
+void Rasterizer::State::setupClusters(const View& view, Span<const Candidate> candidates, bool again, std::vector<Bins>& into) {
+  for (Bins& b : into) b.reset(grid);
   constexpr size_t kClustersPerTask = 32;
   parallel.forRanges(candidates.size(), kClustersPerTask, [&](size_t begin, size_t end, int index) {
     Worker& worker = *workers[size_t(index)];
@@ -197,44 +207,76 @@ void Rasterizer::State::setupClusters(const View& view, const TileGrid& grid, Sp
           continue;
         }
       }
-      setupCluster(view, draw, cluster, v, drawn ? &occlusion : nullptr, bins[size_t(index)], worker.statistics, target);
+      setupCluster(view, draw, cluster, v, drawn ? &occlusion : nullptr, into[size_t(index)], worker.statistics, target);
     }
   });
 }
 
+// What faces away, for GBuffer::depthBack; not counted.
+void Rasterizer::State::setupAway(const View& view, const std::vector<Draw>& draws) {
+  setupClusters(view, findCandidates(view, visibleInstances(view, draws)), false, awayBins);
+  statistics = {};
+  for (auto& w : workers) w->statistics = {};
+}
+
+bool anyOf(Span<const Bins> bins, int tile) {
+  return std::any_of(bins.begin(), bins.end(), [&](const Bins& b) { return !b.empty(tile); });
+}
+
 // The bins into the tiles that are kept, and these into the map.
-void Rasterizer::State::drawRound(const SurfaceContext& context, const TileGrid& grid) {
+void Rasterizer::State::drawRound(const SurfaceContext& context) {
   parallel.forRanges(size_t(grid.count()), 1, [&](size_t begin, size_t end, int) {
     for (size_t t = begin; t < end; ++t) {
-      if (!anyBins(int(t))) continue;
-      TileBuffers tile = placeTile(grid, int(t), kept.key(t), kept.id(t));
-      if (!std::exchange(started[t], 1)) clearTile(tile);
-      rasterTile(context, int(t), bins, tile, target);
+      if (!anyOf(bins, int(t))) continue;
+      TileBuffers tile = placeTile(grid, int(t), kept, t);
+      if (!std::exchange(started[t], 1)) clearTile(keep, tile);
+      rasterTile(context, int(t), bins, keep, tile, target);
       occlusion.update(tile, target);
     }
   });
   drawn = true;
 }
 
-// What the bins still hold, and the attributes of what is seen.
-void Rasterizer::State::finishTiles(const SurfaceContext& context, const TileGrid& grid, GBuffer& out) {
+// A layer behind the first of a tile.
+void Rasterizer::State::drawLayer(const SurfaceContext& context, const TileBuffers& first, bool covered, int index, LayerBehind layer,
+                                  float separation, Worker& worker, Plane<float>& out) {
+  const std::vector<Bins>& from = layer == LayerBehind::Back ? awayBins : bins;
+  worker.behind.reserve(1, grid.tileBits);
+  TileBuffers tile = placeTile(grid, index, worker.behind, 0);
+  const bool more = anyOf(from, index) || !settings.skip;
+  if (more) {
+    worker.limit.resize(1 << (2 * grid.tileBits), 1);
+    tile.limit = worker.limit.row(0);
+    limitTile(*context.view, first, covered, layer, separation, tile, target);
+    clearTile(Keep::KeyWithinLimit, tile);
+    rasterTile(context, index, from, Keep::KeyWithinLimit, tile, target);
+  }
+  storeTileDepth(*context.view, tile, more, out, target);
+}
+
+// What the bins still hold, then the planes.
+void Rasterizer::State::finishTiles(const SurfaceContext& context, const PlaneSet& planes, GBuffer& out) {
   parallel.forRanges(size_t(grid.count()), 1, [&](size_t begin, size_t end, int index) {
     Worker& worker = *workers[size_t(index)];
     if (!rounds) worker.tile.reserve(1, grid.tileBits);
     for (size_t t = begin; t < end; ++t) {
-      TileBuffers tile = rounds ? placeTile(grid, int(t), kept.key(t), kept.id(t)) : placeTile(grid, int(t), worker.tile.key(0), worker.tile.id(0));
-      const bool holds = rounds && started[t], more = anyBins(int(t)) || !settings.skip;
-      if (more && !holds) clearTile(tile);
-      if (more) rasterTile(context, int(t), bins, tile, target);
+      TileBuffers tile = rounds ? placeTile(grid, int(t), kept, t) : placeTile(grid, int(t), worker.tile, 0);
+      const bool holds = rounds && started[t], more = anyOf(bins, int(t)) || !settings.skip, covered = holds || more;
+      if (more && !holds) clearTile(keep, tile);
+      if (more) rasterTile(context, int(t), bins, keep, tile, target);
       ++worker.statistics.tiles;
-      worker.statistics.tilesEmpty += !(holds || more);
-      resolveTile(context, tile, holds || more, out, target);
+      worker.statistics.tilesEmpty += !covered;
+      if (keep == Keep::Visibility) resolveTile(context, tile, covered, out, target);
+      else if (planes.depth) storeTileDepth(*context.view, tile, covered, out.depth, target);
+      if (planes.depth2) drawLayer(context, tile, covered, int(t), LayerBehind::Second, planes.separation, worker, out.depth2);
+      if (planes.depthBack) drawLayer(context, tile, covered, int(t), LayerBehind::Back, 0, worker, out.depthBack);
     }
   });
 }
 
 void Rasterizer::render(const DrawList& list, const Camera& camera, int width, int height, const PlaneSet& planes, GBuffer& out) {
   checkArguments(list, camera, width, height);
+  checkPlanes(planes);
   const FloatEnvironment environment;
   State& s = *state_;
   const auto start = std::chrono::steady_clock::now();
@@ -243,6 +285,7 @@ void Rasterizer::render(const DrawList& list, const Camera& camera, int width, i
   s.timings = {};
   if (s.workers.empty()) {
     s.bins.resize(size_t(s.parallel.workers()));
+    s.awayBins.resize(size_t(s.parallel.workers()));
     for (int i = 0; i < s.parallel.workers(); ++i) s.workers.push_back(std::make_unique<Worker>());
   }
   for (auto& w : s.workers) w->statistics = {};
@@ -256,12 +299,17 @@ void Rasterizer::render(const DrawList& list, const Camera& camera, int width, i
     if (fresh) entry->second = buildClusters(d.mesh->positions, d.mesh->indices);
     d.clusters = &entry->second;
   }
-  const TileGrid grid(width, height, s.tileBits);
+  s.grid = TileGrid(width, height, s.tileBits);
+  s.keep = planes.depthsAlone() ? Keep::Key : Keep::Visibility;
   const SurfaceContext context{&view, draws, list.textures, s.srgb.linear};
+  s.beginFrame(false);
+  if (planes.depthBack) s.setupAway(view, awayDraws(draws));
+  for (Bins& b : s.bins) b.reset(s.grid);
   const std::vector<const Draw*> visible = s.visibleInstances(view, draws);
   size_t clusters = 0;
   for (const Draw* draw : visible) clusters += draw->clusters->clusters.size();
-  s.beginFrame(grid, s.settings.skip && clusters >= kFewClusters && int64_t(width) * height <= kMostKept);
+  // What lies behind the first layer must not be hidden by it.
+  s.beginFrame(s.settings.skip && clusters >= kFewClusters && int64_t(width) * height <= kMostKept && !planes.depth2 && !planes.depthBack);
 
   auto lap = [last = start](double& milliseconds) mutable {
     const auto now = std::chrono::steady_clock::now();
@@ -271,7 +319,7 @@ void Rasterizer::render(const DrawList& list, const Camera& camera, int width, i
   for (size_t from = 0, to = 0; from < visible.size(); from = to, look *= 2) {
     for (size_t count = 0; to < visible.size() && (to == from || count + visible[to]->clusters->clusters.size() <= look); ++to)
       count += visible[to]->clusters->clusters.size();
-    if (from > 0) s.drawRound(context, grid);
+    if (from > 0) s.drawRound(context);
     lap(s.timings.tilesMs);
     std::vector<Candidate> found = s.findCandidates(view, {visible.data() + from, to - from});
     Span<const Candidate> front = found, rest;
@@ -285,17 +333,33 @@ void Rasterizer::render(const DrawList& list, const Camera& camera, int width, i
       front = {found.data(), size_t(middle - found.begin())};
       rest = {found.data() + front.size(), found.size() - front.size()};
     }
-    s.setupClusters(view, grid, front, false);
+    s.setupClusters(view, front, false, s.bins);
     lap(s.timings.setupMs);
     if (rest.empty()) continue;
-    s.drawRound(context, grid);
+    s.drawRound(context);
     lap(s.timings.tilesMs);
-    s.setupClusters(view, grid, rest, true);
+    s.setupClusters(view, rest, true, s.bins);
     lap(s.timings.setupMs);
   }
-  s.finishTiles(context, grid, out);
+  s.finishTiles(context, planes, out);
   lap(s.timings.tilesMs);
   for (const auto& w : s.workers) s.statistics.add(w->statistics);
+}
+
+void Rasterizer::renderDepth(const DrawList& list, const Camera& camera, int width, int height, Plane<float>& depth) {
+  struct Lent {  // given back even if render() throws
+    Plane<float>& plane;
+    GBuffer g;
+    explicit Lent(Plane<float>& p) : plane(p) {
+      g.width = p.width();
+      g.height = p.height();
+      g.depth = std::move(p);
+    }
+    ~Lent() { plane = std::move(g.depth); }
+  } lent(depth);
+  PlaneSet planes;
+  planes.depth = true;
+  render(list, camera, width, height, planes, lent.g);
 }
 
 }  // namespace obscura::raster

@@ -1,6 +1,7 @@
 // The rasterizer: draw list and camera in, G-buffer out.
 //
 //   draws -> cull -> transform -> setup (clip) -> bins -> tiles: visibility -> resolve -> G-buffer
+//                                                               keys alone -> depth, and the layers behind the first
 //
 // One header per stage; see view.h for the conventions (handedness, pixel centres, fill rule, depth).
 #pragma once
@@ -36,12 +37,17 @@ class Rasterizer {
   Rasterizer(Rasterizer&&) noexcept;
   Rasterizer& operator=(Rasterizer&&) noexcept;
 
-  // width, height: 1 ... kMaxImageSize. `out` is allocated anew unless it has the right size and planes already.
+  // width, height: 1 ... kMaxImageSize. `out` is allocated anew unless it has the right size and just these planes already.
   // Throws std::invalid_argument, naming the value, where the list contradicts itself (an index that is out of range, spans
   // of different length, a camera without extent), std::bad_alloc without memory. The vertex indices of a mesh that
   // brings clusters are taken to be those that buildClusters has checked. Bad geometry never throws: it is dropped and
   // counted.
+  // Where only depths are asked for (PlaneSet::depthsAlone) the way is shorter: no ids, no resolve.
   void render(const DrawList& list, const Camera& camera, int width, int height, const PlaneSet& planes, GBuffer& out);
+
+  // The depth plane of render() alone, bit for bit, for shadow maps: a light's camera in, its depth map out. `depth` gets
+  // this size and keeps its memory if it has it already. Throws as render() does.
+  void renderDepth(const DrawList& list, const Camera& camera, int width, int height, Plane<float>& depth);
 
   const Statistics& statistics() const;  // of the last frame
   const Timings& timings() const;
@@ -57,5 +63,6 @@ void renderReference(const DrawList& list, const Camera& camera, int width, int 
 
 // What render() throws about; the reference calls it too.
 void checkArguments(const DrawList& list, const Camera& camera, int width, int height);
+void checkPlanes(const PlaneSet& planes);
 
 }  // namespace obscura::raster

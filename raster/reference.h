@@ -14,6 +14,8 @@ struct Visibility {
 };
 
 Visibility visibility(const SurfaceContext& context);
+// The layers behind it: all triangles once more for each that `out` has a plane for.
+void layersBehind(const SurfaceContext& context, const Visibility& first, float separation, GBuffer& out);
 void resolvePixel(const SurfaceContext& context, uint32_t id, float key, int x, int y, GBuffer& out);
 
 }  // namespace obscura::raster::ref

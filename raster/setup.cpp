@@ -42,11 +42,12 @@ int facingTriangles(const Draw& draw, const Cluster& cluster, int32_t* list) {
     toEye[c] = draw.eye[3] > 0 ? draw.eye[c] - cluster.center[c] : draw.eye[c];
     distance += std::fabs(toEye[c]);
   }
-  const VF w = hn::Set(d, draw.eye[3]);
+  const float turn = draw.away ? -1.0f : 1.0f;  // changes all signs below, and no rounding
+  const VF w = hn::Set(d, turn * draw.eye[3]);
   const float reach = distance + cluster.radius * draw.eye[3];
   // Below 1e-12 products with a plane of 1e-18 come near to underflow: everything is decided exactly.
   const VF slack = hn::Set(d, reach > 1e-12f ? reach * (1.0f / (1 << 20)) : HUGE_VALF);
-  const VF ex = hn::Set(d, toEye[0]), ey = hn::Set(d, toEye[1]), ez = hn::Set(d, toEye[2]);
+  const VF ex = hn::Set(d, turn * toEye[0]), ey = hn::Set(d, turn * toEye[1]), ez = hn::Set(d, turn * toEye[2]);
   for (int t = 0; t < triangles; t += lanes) {
     const size_t at = cluster.firstTriangle + size_t(t);
     const VF nx = hn::LoadU(d, all.planeX.data() + at), ny = hn::LoadU(d, all.planeY.data() + at);
@@ -245,7 +246,7 @@ void SetupCluster(const View& view, const Draw& draw, const Cluster& cluster, co
     }
     const VI area = doubledArea(c);
     const MI wrong = draw.material->doubleSided ? hn::Eq(area, hn::Zero(di))
-                     : draw.mirrored            ? hn::Not(hn::Gt(area, hn::Zero(di)))
+                     : draw.mirrored != draw.away ? hn::Not(hn::Gt(area, hn::Zero(di)))
                                                 : hn::Not(hn::Lt(area, hn::Zero(di)));
     const MI candidates = hn::AndNot(hn::Or(gone, single), valid);
     const MI turned = hn::And(candidates, wrong);

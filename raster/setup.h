@@ -17,11 +17,13 @@ namespace obscura::raster {
 //           tiny triangles may turn round when they are snapped.
 //   after:  the doubled area's sign.
 // Double-sided triangles only need an area; of a flattened instance only the second test is made.
+// Of a draw with Draw::away (single-sided) those are taken that face away before and after, both signs turned: < 0 and the
+// other area. What is edge-on, or turned round by snapping, is neither.
 // occlusion: what is hidden by triangles drawn before, or null.
 void setupCluster(const View& view, const Draw& draw, const Cluster& cluster, const TransformedVertices& vertices,
                   const OcclusionMap* occlusion, Bins& bins, Statistics& statistics, Target target);
 
-// The exact predicate "before" for one triangle of the mesh.
+// The exact predicate "before" for one triangle of the mesh; with Draw::away, of facing away.
 bool facesEye(const Draw& draw, uint32_t triangle);
 
 // One triangle by the scalar way, clipping it if need be (any size; the few that the SIMD path does not take).

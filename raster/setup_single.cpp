@@ -27,7 +27,8 @@ bool facesEye(const Draw& draw, uint32_t triangle) {
   const glm::dvec3 v0(corner[0]), e1 = glm::dvec3(corner[1]) - v0, e2 = glm::dvec3(corner[2]) - v0;
   const glm::dvec3 n(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x);
   const glm::dvec3 eye(draw.eye[0], draw.eye[1], draw.eye[2]), d = draw.eye[3] > 0 ? eye - v0 : eye;
-  return (n.x * d.x + n.y * d.y) + n.z * d.z > 0;
+  const double side = (n.x * d.x + n.y * d.y) + n.z * d.z;
+  return draw.away ? side < 0 : side > 0;
 }
 
 void setupSingle(const View& view, const Draw& draw, uint32_t triangle, Bins& bins, Statistics& statistics) {
@@ -56,7 +57,7 @@ void setupSingle(const View& view, const Draw& draw, uint32_t triangle, Bins& bi
   for (int i = 1; i + 1 < count; ++i) {
     const int fan[3] = {0, i, i + 1};
     for (int c = 0; c < 3; ++c) snapVertex(view, polygon[fan[c]], t.x[c], t.y[c], t.key[c]);
-    const int facing = draw.material->doubleSided ? 0 : draw.mirrored ? -1 : 1;
+    const int facing = draw.material->doubleSided ? 0 : draw.mirrored != draw.away ? -1 : 1;
     LargeTriangle large;
     large.id = draw.firstTriangle + triangle;
     large.masked = draw.material->alphaMode == AlphaMode::Mask;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "obscura/raster/tile.cpp"
@@ -72,6 +73,7 @@ HWY_INLINE PixelVector pixelVector(const Blocks& t, int first) {
 }
 
 // masked: null where coverage is all that counts.
+template <Keep kKeep>
 HWY_INLINE void fillBlock(MaskedTriangle* masked, const Blocks& t, const PixelVector& v, int column, int row, TileBuffers& out) {
   const DF d;
   const DI di;
@@ -86,15 +88,23 @@ HWY_INLINE void fillBlock(MaskedTriangle* masked, const Blocks& t, const PixelVe
   key = hn::IfThenElse(hn::Lt(key, keyMax), key, keyMax);
   const VU id = hn::Set(du, t.id);
   const VF oldKey = hn::Load(d, out.key + at);
-  const VU oldId = hn::Load(du, out.id + at);
-  const MF nearer = hn::Or(hn::Gt(key, oldKey), hn::And(hn::Eq(key, oldKey), hn::RebindMask(d, hn::Lt(id, oldId))));
+  VU oldId = id;
+  MF nearer;
+  if constexpr (kKeep == Keep::Visibility) {
+    oldId = hn::Load(du, out.id + at);
+    nearer = hn::Or(hn::Gt(key, oldKey), hn::And(hn::Eq(key, oldKey), hn::RebindMask(d, hn::Lt(id, oldId))));
+  } else {
+    nearer = hn::Gt(key, oldKey);
+    if constexpr (kKeep == Keep::KeyWithinLimit) nearer = hn::And(nearer, hn::Le(key, hn::Load(d, out.limit + at)));
+  }
   MF wins = hn::And(nearer, hn::RebindMask(d, inside));
   if (masked && !hn::AllFalse(d, wins))
     wins = masked->test(out.x + (t.x + column) * kBlock, out.y + (t.y + row) * kBlock, v.lx, v.ly, wins);
   hn::Store(hn::IfThenElse(wins, key, oldKey), d, out.key + at);
-  hn::Store(hn::IfThenElse(hn::RebindMask(du, wins), id, oldId), du, out.id + at);
+  if constexpr (kKeep == Keep::Visibility) hn::Store(hn::IfThenElse(hn::RebindMask(du, wins), id, oldId), du, out.id + at);
 }
 
+template <Keep kKeep>
 HWY_INLINE void fillBlocks(MaskedTriangle* masked, const Blocks& t, TileBuffers& out) {
   const DI di;
   constexpr int kLanesPerBlock = kBlock * kBlock;
@@ -103,7 +113,7 @@ HWY_INLINE void fillBlocks(MaskedTriangle* masked, const Blocks& t, TileBuffers&
     for (int first = 0; first < kLanesPerBlock; first += lanes) {
       const PixelVector v = pixelVector(t, first);
       for (int row = 0; row < t.rows; ++row)
-        for (int column = 0; column < t.columns; ++column) fillBlock(masked, t, v, column, row, out);
+        for (int column = 0; column < t.columns; ++column) fillBlock<kKeep>(masked, t, v, column, row, out);
     }
     return;
   }
@@ -124,29 +134,43 @@ HWY_INLINE void fillBlocks(MaskedTriangle* masked, const Blocks& t, TileBuffers&
     }
     for (int first = 0; count > 0 && first < kLanesPerBlock; first += lanes) {
       const PixelVector v = pixelVector(t, first);
-      for (int i = 0; i < count; ++i) fillBlock(masked, t, v, touched[i], row, out);
+      for (int i = 0; i < count; ++i) fillBlock<kKeep>(masked, t, v, touched[i], row, out);
     }
   }
 }
 
+template <Keep kKeep>
+HWY_NOINLINE void fillApart(const SurfaceContext& context, bool masked, const Blocks& t, TileBuffers& out) {
+  std::optional<MaskedTriangle> triangle;
+  if (masked) triangle.emplace(context, t.id);
+  fillBlocks<kKeep>(masked ? &*triangle : nullptr, t, out);
+}
+
+// Where ids are kept the loops are there twice for each caller, with masks and without; elsewhere once, which compiles in
+// half of the time.
+template <Keep kKeep>
 HWY_INLINE void fill(const SurfaceContext& context, bool masked, const Blocks& t, TileBuffers& out) {
-  if (HWY_LIKELY(!masked)) {
-    fillBlocks(nullptr, t, out);
+  if constexpr (kKeep != Keep::Visibility) {
+    fillApart<kKeep>(context, masked, t, out);
+  } else if (HWY_LIKELY(!masked)) {
+    fillBlocks<kKeep>(nullptr, t, out);
   } else {
     MaskedTriangle triangle(context, t.id);
-    fillBlocks(&triangle, t, out);
+    fillBlocks<kKeep>(&triangle, t, out);
   }
 }
 
 // All within one block.
+template <Keep kKeep>
 HWY_INLINE void rasterSingle(const SurfaceContext& context, const SmallTriangle& t, TileBuffers& out) {
   const int a0 = lowerHalf(t.a), a1 = upperHalf(t.a), b0 = lowerHalf(t.b), b1 = upperHalf(t.b);
   const Blocks c{{t.e[0], t.e[1], t.e[2]}, {a0, a1, -a0 - a1}, {b0, b1, -b0 - b1}, lowerHalf(t.block) - (out.x >> kBlockBits),
        upperHalf(t.block) - (out.y >> kBlockBits), 1, 1, t.key0, t.xGradient, t.yGradient, t.keyMin, t.keyMax, t.xFromP0, t.yFromP0, t.id};
-  if (HWY_UNLIKELY(t.masked)) return fill(context, true, c, out);
-  for (int first = 0; first < kBlock * kBlock; first += int(hn::Lanes(DF()))) fillBlock(nullptr, c, pixelVector(c, first), 0, 0, out);
+  if (HWY_UNLIKELY(t.masked)) return fill<kKeep>(context, true, c, out);
+  for (int first = 0; first < kBlock * kBlock; first += int(hn::Lanes(DF()))) fillBlock<kKeep>(nullptr, c, pixelVector(c, first), 0, 0, out);
 }
 
+template <Keep kKeep>
 HWY_INLINE void rasterSmall(const SurfaceContext& context, const SmallTriangle& t, TileBuffers& out) {
   Blocks c;
   const int x = lowerHalf(t.block) - (out.x >> kBlockBits), y = upperHalf(t.block) - (out.y >> kBlockBits);
@@ -162,9 +186,10 @@ HWY_INLINE void rasterSmall(const SurfaceContext& context, const SmallTriangle& 
   c.xFromP0 = t.xFromP0 + float(dx * kSub);
   c.yFromP0 = t.yFromP0 + float(dy * kSub);
   c.id = t.id;
-  fill(context, t.masked, c, out);
+  fill<kKeep>(context, t.masked, c, out);
 }
 
+template <Keep kKeep>
 HWY_INLINE void rasterLarge(const SurfaceContext& context, const LargeTriangle& t, TileBuffers& out) {
   Blocks c;
   const int x0 = std::max(t.x0, out.x), y0 = std::max(t.y0, out.y);
@@ -184,14 +209,23 @@ HWY_INLINE void rasterLarge(const SurfaceContext& context, const LargeTriangle& 
   c.xFromP0 = float(context.view->xCenterSub(x) - t.p0x);
   c.yFromP0 = float(context.view->yCenterSub(y) - t.p0y);
   c.id = t.id;
-  fill(context, t.masked, c, out);
+  fill<kKeep>(context, t.masked, c, out);
 }
 
-void RasterTile(const SurfaceContext& context, int tile, Span<const Bins> bins, TileBuffers& out) {
+template <Keep kKeep>
+HWY_NOINLINE void rasterBins(const SurfaceContext& context, int tile, Span<const Bins> bins, TileBuffers& out) {
   for (const Bins& b : bins) {
-    for (uint32_t index : b.large(tile)) rasterLarge(context, b.triangle(index), out);
-    for (const SmallTriangle& t : b.small(tile)) rasterSmall(context, t, out);
-    for (const SmallTriangle& t : b.single(tile)) rasterSingle(context, t, out);
+    for (uint32_t index : b.large(tile)) rasterLarge<kKeep>(context, b.triangle(index), out);
+    for (const SmallTriangle& t : b.small(tile)) rasterSmall<kKeep>(context, t, out);
+    for (const SmallTriangle& t : b.single(tile)) rasterSingle<kKeep>(context, t, out);
+  }
+}
+
+void RasterTile(const SurfaceContext& context, int tile, Span<const Bins> bins, Keep keep, TileBuffers& out) {
+  switch (keep) {
+    case Keep::Visibility: return rasterBins<Keep::Visibility>(context, tile, bins, out);
+    case Keep::Key: return rasterBins<Keep::Key>(context, tile, bins, out);
+    case Keep::KeyWithinLimit: return rasterBins<Keep::KeyWithinLimit>(context, tile, bins, out);
   }
 }
 
@@ -209,15 +243,15 @@ HWY_EXPORT(RasterTile);
 void TileMemory::reserve(size_t tiles, int tileBits) {
   tileBits_ = tileBits;
   const size_t pixels = tiles << (2 * tileBits);
-  if (pixels <= size_t(keys_.width()) * size_t(keys_.height())) return;
+  if (pixels <= size_t(keys_.width())) return;
   keys_ = Plane<float>(int(pixels), 1);
   ids_ = Plane<uint32_t>(int(pixels), 1);
 }
 
-TileBuffers placeTile(const TileGrid& grid, int tile, float* key, uint32_t* id) {
+TileBuffers placeTile(const TileGrid& grid, int tile, TileMemory& memory, size_t place) {
   TileBuffers t;
-  t.key = key;
-  t.id = id;
+  t.key = memory.key(place);
+  t.id = memory.id(place);
   t.x = (tile % grid.columns) << grid.tileBits;
   t.y = (tile / grid.columns) << grid.tileBits;
   t.width = std::min(1 << grid.tileBits, grid.width - t.x);
@@ -226,14 +260,13 @@ TileBuffers placeTile(const TileGrid& grid, int tile, float* key, uint32_t* id) 
   return t;
 }
 
-void clearTile(TileBuffers& tile) {
-  const size_t pixels = size_t(tile.columns * ((tile.height + kBlock - 1) >> kBlockBits)) << (2 * kBlockBits);
-  std::fill_n(tile.key, pixels, -std::numeric_limits<float>::infinity());
-  std::fill_n(tile.id, pixels, kNoTriangle);
+void clearTile(Keep keep, TileBuffers& tile) {
+  std::fill_n(tile.key, tile.pixels(), -std::numeric_limits<float>::infinity());
+  if (keep == Keep::Visibility) std::fill_n(tile.id, tile.pixels(), kNoTriangle);
 }
 
-void rasterTile(const SurfaceContext& context, int tile, Span<const Bins> bins, TileBuffers& out, Target target) {
-  OBSCURA_DISPATCH(RasterTile, target)(context, tile, bins, out);
+void rasterTile(const SurfaceContext& context, int tile, Span<const Bins> bins, Keep keep, TileBuffers& out, Target target) {
+  OBSCURA_DISPATCH(RasterTile, target)(context, tile, bins, keep, out);
 }
 
 }  // namespace obscura::raster

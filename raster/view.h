@@ -46,6 +46,7 @@ struct Draw {
   float eye[4];                        // the eye in object space, (x, y, z, 1), or the direction to it, (x, y, z, 0)
   bool invertible = false;             // false (flattened): eye and normalToView are meaningless
   bool mirrored = false;               // negative determinant
+  bool away = false;                   // setup takes the triangles that face away instead, see setup.h
   float maxScale = 0;                  // no direction is stretched more than this (upper bound)
   uint32_t firstTriangle = 0;          // id of the mesh's triangle 0
   uint32_t triangleCount = 0;

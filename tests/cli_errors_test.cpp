@@ -58,6 +58,20 @@ TEST_CASE("cli: what the command line cannot mean ends with 2 and says why") {
   w.failing(2, {"--digest", "--camera", "side"}, "0 \"front\"");
   w.failing(2, {"--digest", "--camera", "front", "--eye", "1,2,3"}, "camera");
   w.failing(2, {"--digest", "--scene", "7"}, "scene");
+  w.failing(2, {"--digest", "--separation", "0"}, "--separation");
+  w.failing(2, {"--digest", "--aov", "depth2", "--separation", "1e-300"}, "separation must be positive");
+  const std::string one = "1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1", lens = "1,0,0,0,0,1,0,0,0,0,-1,-1,0,0,-0.2,0";
+  w.failing(2, {"--digest", "--view-matrix", one}, "need each other");
+  w.failing(2, {"--digest", "--projection-matrix", lens}, "need each other");
+  w.failing(2, {"--digest", "--view-matrix", "1,2,3", "--projection-matrix", lens}, "M0,...,M15");
+  w.failing(2, {"--digest", "--view-matrix", one + ",0", "--projection-matrix", lens}, "M0,...,M15");
+  w.failing(2, {"--digest", "--view-matrix", one, "--projection-matrix", one}, "not in front of the eye");
+  for (const Words& other : {Words{"--eye", "1,2,3"}, Words{"--target", "1,2,3"}, Words{"--up", "0,0,1"}, Words{"--fov", "50"},
+                             Words{"--camera", "front"}}) {
+    Words words = {"--digest", "--view-matrix", one, "--projection-matrix", lens};
+    words.insert(words.end(), other.begin(), other.end());
+    w.failing(2, words, "cannot be had at once");
+  }
   w.failing(2, {"--digest", "--tile", "48"}, "16|32|64");
   w.failing(2, {"--digest", "--target", "mmx"}, "scalar");
 #if defined(__x86_64__)

@@ -185,6 +185,33 @@ TEST_CASE("cli: the lengths' defaults are the stated fractions of the scene's si
   REQUIRE(stated != color(r, 0.01 * r, 0.3 * r));
 }
 
+TEST_CASE("cli: the second depth layer begins at the separation, a tenth of R unless it is given") {
+  const Workplace w;  // the fence at depth 4, the wall behind it at 5
+  const auto all = [&](const Words& options) {
+    Words words = {"--aov", "depth,depth2,depthback,transfer"};
+    words.insert(words.end(), options.begin(), options.end());
+    return w.digests(words);
+  };
+  const auto standard = all({}), nearer = all({"--separation", "0.99"}), farther = all({"--separation", "1.01"});
+  REQUIRE(nearer == standard);
+  REQUIRE(farther.at("depth2") != standard.at("depth2"));
+  for (const char* name : {"depth", "depthback", "transfer"}) REQUIRE(farther.at(name) == standard.at(name));
+  REQUIRE(all({"--radius", "9.9"}).at("depth2") == nearer.at("depth2"));
+  REQUIRE(all({"--radius", "10.1"}).at("depth2") == farther.at("depth2"));
+  REQUIRE(w.render({"--aov", "depth2", "-o", w / "a.npy"}).code == 0);
+  REQUIRE(w.render({"--aov", "depth,depth2,depthback", "-o", w / "a.exr", "-o", w / "a.png"}).code == 0);
+  REQUIRE(engine::digestLine("depth2", imageAt(w / "a.npy")) == standard.at("depth2"));
+  REQUIRE(engine::readLayers(w / "a.exr")->size() == 3);
+}
+
+TEST_CASE("cli: matrices, column by column, give the picture of the camera that they are of") {
+  const Workplace w;
+  // As the file's camera: at (1, 1, 5), cot(0.35) = 2.7395, an image of 1.2 to 1, near 0.1, far infinite.
+  const auto matrices = w.digests({"--aov", "all", "--view-matrix", "1,0,0,0,0,1,0,0,0,0,1,0,-1,-1,-5,1", "--projection-matrix",
+                                   "2.282926799236486,0,0,0,0,2.7395121590837834,0,0,0,0,-1,-1,0,0,-0.2,0"});
+  REQUIRE(matrices == w.digests({"--aov", "all"}));
+}
+
 TEST_CASE("cli: --target is a point, an instruction set, or both") {
   const Workplace w;
   const Words eye = {"--eye", "-1,3,6"};

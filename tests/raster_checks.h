@@ -14,22 +14,25 @@ namespace obscura::tests {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
 
 inline raster::GBuffer render(const TestScene& s, const raster::Settings& settings = {},
-                              raster::Statistics* statistics = nullptr) {
+                              raster::Statistics* statistics = nullptr, const raster::PlaneSet& planes = kAllPlanes) {
   raster::Rasterizer rasterizer(settings);
   raster::GBuffer g;
-  rasterizer.render(s.list(), s.camera, s.width, s.height, kAllPlanes, g);
+  rasterizer.render(s.list(), s.camera, s.width, s.height, planes, g);
   if (statistics) *statistics = rasterizer.statistics();
   return g;
 }
 
-// Equal to the scalar twins with and without skipping, with the best target and the plainest.
+// Equal to the scalar twins with and without skipping, with the best target and the plainest; and so are depths alone, with
+// the layers behind the first.
 inline void checkAgainstReference(const TestScene& s) {
-  raster::GBuffer expected;
+  raster::GBuffer expected, depths;
   raster::renderReference(s.list(), s.camera, s.width, s.height, kAllPlanes, expected);
+  raster::renderReference(s.list(), s.camera, s.width, s.height, kDepths, depths);
   for (raster::Target target : {raster::supportedTargets().front(), raster::supportedTargets().back()})
     for (bool skip : {true, false}) {
       INFO(raster::targetName(target) << (skip ? "" : ", no skip"));
       REQUIRE(firstDifference(render(s, {1, target, 16, skip}), expected) == "");
+      REQUIRE(firstDifference(render(s, {1, target, 16, skip}, nullptr, kDepths), depths) == "");
     }
 }
 

@@ -129,6 +129,8 @@ std::string firstDifference(const GBuffer& a, const GBuffer& b) {
     if (d.empty()) d = firstDifference("emissive", a.emissive[c], b.emissive[c]);
     if (d.empty()) d = firstDifference("position", a.position[c], b.position[c]);
   }
+  if (d.empty()) d = firstDifference("depth2", a.depth2, b.depth2);
+  if (d.empty()) d = firstDifference("depthBack", a.depthBack, b.depthBack);
   return d;
 }
 

@@ -62,8 +62,12 @@ class Random {
 // flattened instances, orthographic cameras, near and far planes through the geometry.
 TestScene soupScene(uint32_t seed);
 
-// Every plane there is.
+// Every plane of the first layer.
 constexpr raster::PlaneSet kAllPlanes{true, true, true, true, true, true, true, true};
+
+// Those behind it as well, and depths alone. The separation is a tenth of a soup's size, so some layers are skipped.
+constexpr raster::PlaneSet kAllLayers{true, true, true, true, true, true, true, true, true, true, 0.6f};
+constexpr raster::PlaneSet kDepths{true, false, false, false, false, false, false, false, true, true, 0.6f};
 
 // Empty if equal, else the first difference: "albedo[1] differs at (3, 7): 0.5 (3f000000) and ...".
 std::string firstDifference(const char* name, const raster::Plane<float>& a, const raster::Plane<float>& b);
