@@ -21,12 +21,14 @@ bool sphereVisible(const View& view, const Draw& draw, const glm::vec3& center, 
   if (!(reach < 1e18f)) return true;  // NaN, infinite or near overflow: the triangles decide one by one
   const float zView = -p[2];
   if (zView + reach < view.zNear || zView - reach > view.zFar) return false;
-  // Each side plane with a pixel to spare for snapping: +-(x scale) + zView (half + 1 pixel +- shift) >= 0.
+  // Each side plane with a pixel to spare for snapping: (x scale) + zView (shift - first + 1 pixel) >= 0 on the left and
+  // above, -(x scale) + zView (last + 1 pixel - shift) >= 0 on the right and below.
   const float scale[2] = {view.xScaleSub, view.yScaleSub}, shift[2] = {view.xShiftSub, view.yShiftSub};
-  const float half[2] = {float(view.xHalfSub + kSub), float(view.yHalfSub + kSub)};
+  const float toFirst[2] = {float(kSub - view.xFirstSub), float(kSub - view.yFirstSub)};
+  const float toLast[2] = {float(view.xLastSub + kSub), float(view.yLastSub + kSub)};
   for (int axis = 0; axis < 2; ++axis)
     for (float sign : {1.f, -1.f}) {
-      const float a = sign * scale[axis], b = half[axis] + sign * shift[axis];
+      const float a = sign * scale[axis], b = (sign > 0 ? toFirst : toLast)[axis] + sign * shift[axis];
       const float distance = view.perspective ? a * p[axis] + b * zView : a * p[axis] + b;
       const float length = view.perspective ? std::sqrt(a * a + b * b) : std::fabs(a);
       const float slack = view.perspective ? 0 : b * kSlack;

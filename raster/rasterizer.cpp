@@ -105,7 +105,7 @@ void Rasterizer::State::setupClusters(const View& view, const std::vector<Draw>&
       transformVertices(view, draw, all.x.data() + cluster.firstVertex, all.y.data() + cluster.firstVertex,
                         all.z.data() + cluster.firstVertex, int(cluster.vertexCount), worker.vertices, target);
       if (settings.skip && worker.vertices.allCodes != 0 && !(worker.vertices.anyCode & kNeedsClip)) {
-        skipped();  // all vertices on the same outer side of the image
+        skipped();  // all vertices on the same outer side of the window
         continue;
       }
       setupCluster(view, draw, cluster, worker.vertices, bins[size_t(index)], worker.statistics, target);
@@ -125,12 +125,14 @@ void Rasterizer::State::rasterTiles(const SurfaceContext& context, const TileGri
   });
 }
 
-void Rasterizer::render(const DrawList& list, const Camera& camera, int width, int height, const PlaneSet& planes, GBuffer& out) {
-  checkArguments(list, camera, width, height);
+void Rasterizer::render(const DrawList& list, const Camera& camera, int width, int height, const PlaneSet& planes, GBuffer& out,
+                        const std::optional<Window>& window) {
+  checkArguments(list, camera, width, height, window);
   const FloatEnvironment environment;
   State& s = *state_;
   const auto start = std::chrono::steady_clock::now();
-  if (out.width != width || out.height != height || !out.has(planes)) out = GBuffer(width, height, planes);
+  const View view = makeView(camera, width, height, window);
+  if (out.width != view.width || out.height != view.height || !out.has(planes)) out = GBuffer(view.width, view.height, planes);
   s.statistics = {};
   if (s.workers.empty()) {
     s.bins.resize(size_t(s.parallel.workers()));
@@ -138,7 +140,6 @@ void Rasterizer::render(const DrawList& list, const Camera& camera, int width, i
   }
   for (auto& w : s.workers) w->statistics = {};
 
-  const View view = makeView(camera, width, height);
   std::vector<Draw> draws = makeDraws(list, camera);
   std::map<const MeshView*, Clusters> made;  // of meshes that came without
   for (Draw& d : draws) {
@@ -147,7 +148,7 @@ void Rasterizer::render(const DrawList& list, const Camera& camera, int width, i
     if (fresh) entry->second = buildClusters(d.mesh->positions, d.mesh->indices);
     d.clusters = &entry->second;
   }
-  const TileGrid grid(width, height, s.tileBits);
+  const TileGrid grid(view.width, view.height, s.tileBits);
   const SurfaceContext context{&view, draws, list.textures, s.srgb.linear};
   s.setupClusters(view, draws, grid);
   s.timings.setupMs = millisecondsSince(start);

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "obscura/raster/camera.h"
 #include "obscura/raster/draw.h"
@@ -36,12 +37,14 @@ class Rasterizer {
   Rasterizer(Rasterizer&&) noexcept;
   Rasterizer& operator=(Rasterizer&&) noexcept;
 
-  // width, height: 1 ... kMaxImageSize. `out` is allocated anew unless it has the right size and planes already.
+  // width, height: of the camera's image, 1 ... kMaxImageSize. `out` becomes the window of it, without one the whole; it is
+  // allocated anew unless it has the right size and planes already.
   // Throws std::invalid_argument, naming the value, where the list contradicts itself (an index that is out of range, spans
-  // of different length, a camera without extent), std::bad_alloc without memory. The vertex indices of a mesh that
+  // of different length, a camera without extent, a window that reaches beyond the guard band), std::bad_alloc without memory. The vertex indices of a mesh that
   // brings clusters are taken to be those that buildClusters has checked. Bad geometry never throws: it is dropped and
   // counted.
-  void render(const DrawList& list, const Camera& camera, int width, int height, const PlaneSet& planes, GBuffer& out);
+  void render(const DrawList& list, const Camera& camera, int width, int height, const PlaneSet& planes, GBuffer& out,
+              const std::optional<Window>& window = {});
 
   const Statistics& statistics() const;  // of the last frame
   const Timings& timings() const;
@@ -53,9 +56,11 @@ class Rasterizer {
 
 // The same by the scalar twins: every triangle against every pixel of its box, one thread, no tiles, no culling, no
 // SIMD. Short and slow; equal to Rasterizer::render bit for bit.
-void renderReference(const DrawList& list, const Camera& camera, int width, int height, const PlaneSet& planes, GBuffer& out);
+void renderReference(const DrawList& list, const Camera& camera, int width, int height, const PlaneSet& planes, GBuffer& out,
+                     const std::optional<Window>& window = {});
 
 // What render() throws about; the reference calls it too.
-void checkArguments(const DrawList& list, const Camera& camera, int width, int height);
+void checkArguments(const DrawList& list, const Camera& camera, int width, int height,
+                    const std::optional<Window>& window = {});
 
 }  // namespace obscura::raster
