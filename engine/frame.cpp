@@ -158,8 +158,9 @@ Result<Done> Renderer::render(const Scene& scene, const FrameSettings& settings,
   frame.height = h;
   frame.x = output.x, frame.y = output.y;
   frame.imageWidth = settings.width, frame.imageHeight = settings.height;
-  const post::TransferInput in{&g, post::makeProjector(settings.camera, settings.width, settings.height, drawn),
-                               settings.transfer, post::transferSamples(settings.transfer)};
+  post::TransferInput in{&g, post::makeProjector(settings.camera, settings.width, settings.height, drawn),
+                         settings.transfer, post::transferSamples(settings.transfer)};
+  if (!needs.w) in.settings.albedo = post::TransferAlbedo::Own;  // O needs no neighbour's albedo, and there is none
   if (needs.sums) {
     s.sums = post::makeTransferSums(in, std::move(s.sums));
     const raster::Window filtered = filteredWindow(settings);
