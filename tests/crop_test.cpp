@@ -237,13 +237,13 @@ TEST_CASE("crop: no test point of the transfer is projected outside of what is d
 }
 
 TEST_CASE("crop: what the filter reads beside a crop decides, too, how far around it has to be drawn") {
-  // A near strip one pixel left of the crop, whose samples reach farther than those of the far wall in the crop.
+  // A near strip just left of the crop at 40: its samples reach the panel on the right, those of the far wall do not.
   TestScene t;
   t.materials.resize(1);
   TestMesh& m = t.addMesh();
   TestScene::addQuad(m, {-40, -40, -20}, {40, -40, -20}, {40, 40, -20}, {-40, 40, -20});
   TestScene::addQuad(m, {-0.04f, -2, -1}, {0, -2, -1}, {0, 2, -1}, {-0.04f, 2, -1});
-  TestScene::addQuad(m, {0.3f, -2, -0.9f}, {0.5f, -2, -0.9f}, {0.5f, 2, -0.9f}, {0.3f, 2, -0.9f});
+  TestScene::addQuad(m, {0.14f, -2, -0.6f}, {0.4f, -2, -0.6f}, {0.4f, 2, -0.6f}, {0.14f, 2, -0.6f});
   t.place(m);
   const engine::Scene scene = sceneFrom(t);
   engine::FrameSettings s;
