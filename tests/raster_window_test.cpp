@@ -107,15 +107,15 @@ TEST_CASE("window: threads, targets, tile sizes and skipping do not change a bit
 }
 
 TEST_CASE("window: what lies outside of it is culled, and what lies in it is not") {
-  // A wall of many small clusters across the image; the window sees a sixteenth of them.
+  // A wall of 64 x 64 quads across the image, 8 x 8 after 8 x 8 so that clusters are compact; a window sees a sixteenth.
   TestScene s;
   s.materials.resize(1);
   TestMesh& m = s.addMesh();
-  for (int y = 0; y < 64; ++y)
-    for (int x = 0; x < 64; ++x) {
-      const float l = float(x) / 32 - 1, b = float(y) / 32 - 1, d = 1.0f / 32;
-      TestScene::addQuad(m, {l, b, 0}, {l + d, b, 0}, {l + d, b + d, 0}, {l, b + d, 0});
-    }
+  for (int i = 0; i < 64 * 64; ++i) {
+    const int x = (i & 7) + 8 * (i >> 6 & 7), y = (i >> 3 & 7) + 8 * (i >> 9);
+    const float l = float(x) / 32 - 1, b = float(y) / 32 - 1, d = 1.0f / 32;
+    TestScene::addQuad(m, {l, b, 0}, {l + d, b, 0}, {l + d, b + d, 0}, {l, b + d, 0});
+  }
   s.place(m);
   s.width = s.height = 256;
   for (bool perspectiveView : {true, false}) {
