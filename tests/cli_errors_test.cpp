@@ -112,6 +112,7 @@ TEST_CASE("cli: an image in which nothing is seen is refused, or accepted with a
   const Finished f = w.failing(3, away, "nothing is visible from this camera");
   REQUIRE(f.err.find("0,0,0 to 2,2,2") != std::string::npos);
   REQUIRE(f.err.find("--allow-empty") != std::string::npos);
+  w.failing(3, {"--eye", "1,1,9", "--crop", "0,0,4x4", "-o", w / "a.png"}, "nothing is visible in this crop");
   Words words = {"render", w.scene, "--size", "32x32", "--allow-empty"};
   words.insert(words.end(), away.begin(), away.end());
   const Finished accepted = runProgram(words);
