@@ -68,6 +68,21 @@ bool readSize(const std::string& text, int& width, int& height) {
   return true;
 }
 
+// "X,Y,WxH"; whether it lies in the image is the frame's business.
+std::optional<raster::Window> cropOf(std::string_view text) {
+  raster::Window w;
+  for (int* v : {&w.x, &w.y}) {
+    const size_t comma = text.find(',');
+    if (comma == text.npos) return std::nullopt;
+    const std::optional<int> number = numberOf<int>(text.substr(0, comma));
+    if (!number || *number < 0) return std::nullopt;
+    *v = *number;
+    text.remove_prefix(comma + 1);
+  }
+  if (!readSize(std::string(text), w.width, w.height)) return std::nullopt;
+  return w;
+}
+
 std::string shown(double v) {
   char text[32];
   return std::string(text, std::to_chars(text, text + sizeof text, v).ptr);
@@ -189,6 +204,15 @@ void addView(CLI::App& app, FrameOptions& o) {
           "of the image in pixels, up to " + std::to_string(raster::kMaxImageSize) + " a side [" + size + "]",
           [&o](const std::string& text) { return readSize(text, o.width, o.height); })
       ->group("View");
+  addRead(app, "--crop", "X,Y,WxH",
+          "only this part of the image: W x H pixels, the first X from the left and Y from the top; each has the bits "
+          "that it has in the whole image [all of it]",
+          [&o](const std::string& text) { return bool(o.crop = cropOf(text)); })
+      ->group("View");
+  addInteger(app, "--border", 0, raster::kMaxImageSize / 2, o.border,
+             "pixels around the image that are not in it but occlude what is [" + std::to_string(o.border) + "]")
+      ->type_name("PIXELS")
+      ->group("View");
   app.add_option(
          "--camera", o.camera.name,
          "camera of the file, by its name, its node's name or its index [the first; without one: a view of everything]")
@@ -281,6 +305,8 @@ engine::Result<ResolvedFrame> FrameOptions::resolve(const engine::Scene& in) con
   const double r = radius.value_or(engine::kDefaultRadius * engine::sceneSize(in));
   out.frame.width = width;
   out.frame.height = height;
+  out.frame.border = border;
+  out.frame.crop = crop;
   out.frame.camera = *chosen;
   out.frame.ambient = ambient;
   out.frame.ambientLight = ambientLight;

@@ -118,7 +118,9 @@ Result<std::vector<uint8_t>> encodeOutput(const Output& output, const engine::Fr
     const bool asPicture = output.format == FileFormat::Png;
     layers.push_back({info.name, info.channels, asPicture ? picture(frame, aov, bits) : planeImage(frame, aov)});
   }
-  return engine::encodeImage(output.format, layers, shownName(output.path));
+  engine::Placement place;
+  if (!output.stages) place = {frame.x, frame.y, frame.imageWidth, frame.imageHeight};
+  return engine::encodeImage(output.format, layers, shownName(output.path), place);
 }
 
 }  // namespace obscura::apps

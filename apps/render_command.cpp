@@ -103,7 +103,9 @@ bool isEmpty(const raster::Plane<float>& depth) {
   return true;
 }
 
-Error nothingVisible(const engine::Scene& scene, const std::string& file) {
+Error nothingVisible(const engine::Scene& scene, bool crop, const std::string& file) {
+  if (crop)
+    return {ErrorCode::BadInput, "nothing is visible in this crop: choose another, or accept it with --allow-empty", file, ""};
   const auto point = [](const glm::dvec3& p) {
     char text[96];
     std::snprintf(text, sizeof text, "%.3g,%.3g,%.3g", p.x, p.y, p.z);
@@ -248,9 +250,9 @@ int RenderCommand::run() {
   engine::Frame frame;
   if (const auto done = renderer.render(*scene, resolved->frame, frame); !done) return failed(done.error());
   if (isEmpty(frame.g.depth)) {
-    if (!allowEmpty_) return failed(nothingVisible(*scene, scene_));
+    if (!allowEmpty_) return failed(nothingVisible(*scene, options_.crop.has_value(), scene_));
     progress.clear();
-    printWarning("nothing is visible from this camera");
+    printWarning(options_.crop ? "nothing is visible in this crop" : "nothing is visible from this camera");
   }
 
   progress.step("writing");

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "obscura/engine/crop.h"
 #include "obscura/post/transfer_samples.h"
 #include "obscura/raster/float_environment.h"
 #include "obscura/raster/parallel.h"
@@ -84,17 +85,23 @@ struct Renderer::State {
   std::vector<raster::Instance> instances;
   std::vector<raster::TextureView> textures;
   post::TransferSums sums;
+  raster::GBuffer drawn;         // of a frame with border or crop, as are its O and W: more than is given
+  post::Transfer drawnTransfer;
 
   State(const raster::Settings& s, bool ref)
       : settings(s), reference(ref), target(raster::chooseTarget(s.target)), rasterizer(s), parallel(ref ? 1 : s.threads) {}
 
   raster::DrawList drawList(const Scene& scene);
+  void rasterize(const raster::DrawList& list, const FrameSettings& s, const raster::PlaneSet& planes, const raster::Window& w,
+                 raster::GBuffer& out);
+  raster::Window windowToDraw(const raster::DrawList& list, const FrameSettings& s, const Needs& needs);
 
-  // Calls body(y0, y1) for bands of rows, in parallel.
+  // Calls body(y0, y1) for bands of the rows first ... end - 1, in parallel.
   template <class Body>
-  void forRows(int height, const Body& body) {
+  void forRows(int first, int end, const Body& body) {
     constexpr size_t kRowsPerTask = 8;
-    parallel.forRanges(size_t(height), kRowsPerTask, [&](size_t y0, size_t y1, int) { body(int(y0), int(y1)); });
+    parallel.forRanges(size_t(end - first), kRowsPerTask,
+                       [&](size_t y0, size_t y1, int) { body(first + int(y0), first + int(y1)); });
   }
 };
 
@@ -116,50 +123,78 @@ raster::DrawList Renderer::State::drawList(const Scene& scene) {
   return {instances, scene.materials, textures};
 }
 
+void Renderer::State::rasterize(const raster::DrawList& list, const FrameSettings& s, const raster::PlaneSet& planes,
+                                const raster::Window& w, raster::GBuffer& out) {
+  if (reference) raster::renderReference(list, s.camera, s.width, s.height, planes, out, w);
+  else rasterizer.render(list, s.camera, s.width, s.height, planes, out, w);
+}
+
+// A crop needs as much around it as the transfer's samples reach, and how far that is, the depth in it tells.
+raster::Window Renderer::State::windowToDraw(const raster::DrawList& list, const FrameSettings& s, const Needs& needs) {
+  if (!needs.sums) return outputWindow(s);
+  if (!s.crop) return wholeWindow(s);
+  raster::PlaneSet onlyDepth;
+  onlyDepth.depth = true;
+  raster::GBuffer g;
+  rasterize(list, s, onlyDepth, filteredWindow(s), g);
+  return transferWindow(s, nearestDepth(g.depth));
+}
+
 Result<Done> Renderer::render(const Scene& scene, const FrameSettings& settings, Frame& frame) try {
   if (const char* wrong = wrongSetting(settings)) return Error{ErrorCode::Usage, wrong, "", ""};
+  if (const std::string wrong = wrongCrop(settings); !wrong.empty()) return Error{ErrorCode::Usage, wrong, "", ""};
   const raster::FloatEnvironment environment;
   State& s = *state_;
   const Needs needs = needsOf(scene, settings);
-  const int w = settings.width, h = settings.height;
+  const raster::Window output = outputWindow(settings);
+  const int w = output.width, h = output.height;
   frame.timings = {};
   Stopwatch total, watch;
 
   const raster::DrawList list = s.drawList(scene);
-  if (s.reference) raster::renderReference(list, settings.camera, w, h, needs.planes, frame.g);
-  else s.rasterizer.render(list, settings.camera, w, h, needs.planes, frame.g);
+  const raster::Window drawn = s.windowToDraw(list, settings, needs);
+  const raster::Window part{output.x - drawn.x, output.y - drawn.y, w, h};  // the output in what is drawn
+  const bool more = drawn.width > w || drawn.height > h;
+  raster::GBuffer& g = more ? s.drawn : frame.g;
+  s.rasterize(list, settings, needs.planes, drawn, g);
   frame.statistics = s.rasterizer.statistics();
   frame.timings.gbuffer = watch.lap();
 
   frame.width = w;
   frame.height = h;
-  const post::TransferInput in{&frame.g, post::makeProjector(settings.camera, w, h), settings.transfer,
-                               post::transferSamples(settings.transfer)};
+  frame.x = output.x, frame.y = output.y;
+  frame.imageWidth = settings.width, frame.imageHeight = settings.height;
+  post::TransferInput in{&g, post::makeProjector(settings.camera, settings.width, settings.height, drawn),
+                         settings.transfer, post::transferSamples(settings.transfer)};
+  if (!needs.w) in.settings.albedo = post::TransferAlbedo::Own;  // O needs no neighbour's albedo, and there is none
   if (needs.sums) {
     s.sums = post::makeTransferSums(in, std::move(s.sums));
-    s.forRows(h, [&](int y0, int y1) {
+    const raster::Window filtered = filteredWindow(settings);
+    s.forRows(filtered.y - drawn.y, filtered.y + filtered.height - drawn.y, [&](int y0, int y1) {
       s.reference ? post::ambientTransferRef(in, y0, y1, s.sums) : post::ambientTransfer(in, y0, y1, s.sums, s.target);
     });
     frame.timings.transfer = watch.lap();
 
-    frame.transfer = post::makeTransfer(w, h, needs.obscurance, needs.w, std::move(frame.transfer));
-    s.forRows(h, [&](int y0, int y1) {
-      s.reference ? post::depthFilterRef(in, s.sums, y0, y1, frame.transfer)
-                  : post::depthFilter(in, s.sums, y0, y1, frame.transfer, s.target);
+    post::Transfer& transfer = more ? s.drawnTransfer : frame.transfer;
+    transfer = post::makeTransfer(g.width, g.height, needs.obscurance, needs.w, std::move(transfer));
+    s.forRows(part.y, part.y + h, [&](int y0, int y1) {
+      s.reference ? post::depthFilterRef(in, s.sums, y0, y1, transfer) : post::depthFilter(in, s.sums, y0, y1, transfer, s.target);
     });
+    if (more) cutOut(transfer, part, frame.transfer);
     frame.timings.filter = watch.lap();
   }
+  if (more) cutOut(g, part, frame.g);
   if (needs.color) {
     frame.color = post::makeLinearColor(w, h, std::move(frame.color));
     const post::LightInput li{&frame.g, &frame.transfer, settings.ambient, settings.ambientLight, settings.background};
-    s.forRows(h, [&](int y0, int y1) {
+    s.forRows(0, h, [&](int y0, int y1) {
       s.reference ? post::lightRef(li, y0, y1, frame.color) : post::light(li, y0, y1, frame.color, s.target);
     });
     frame.timings.light = watch.lap();
   }
   if (settings.display) {
     frame.display = post::makeDisplayImage(w, h, std::move(frame.display));
-    s.forRows(h, [&](int y0, int y1) {
+    s.forRows(0, h, [&](int y0, int y1) {
       s.reference ? post::displayRef(frame.color, s.table, y0, y1, frame.display)
                   : post::display(frame.color, s.table, y0, y1, frame.display, s.target);
     });

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -20,6 +21,12 @@ namespace obscura::engine {
 struct FrameSettings {
   int width = 800, height = 600;  // pixels, 1 ... raster::kMaxImageSize
   raster::Camera camera;
+  // Pixels more on every side that are rasterized and that the transfer and its filter see, but that are not given: what
+  // lies just off screen occludes, too. 0 or more; image and borders are at most raster::kMaxImageSize a side.
+  int border = 0;
+  // The part of the image that is wanted, inside of it. Changes no bit: its pixels are those of the whole frame with the
+  // same border.
+  std::optional<raster::Window> crop;
   post::Occlusion ambient = post::Occlusion::Transfer;
   post::AmbientSettings transfer;
   glm::vec3 ambientLight{1};      // La, linear
@@ -35,7 +42,9 @@ struct FrameTimings {  // milliseconds; 0 for what was not needed
 
 // Planes that no AOV needed are empty.
 struct Frame {
-  int width = 0, height = 0;
+  int width = 0, height = 0;            // of the planes: the crop's, or the image's
+  int x = 0, y = 0;                     // where their pixel (0, 0) lies in the image
+  int imageWidth = 0, imageHeight = 0;
   raster::GBuffer g;
   post::Transfer transfer;
   post::LinearColor color;

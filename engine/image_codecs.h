@@ -37,6 +37,7 @@ Result<std::vector<uint8_t>> encodeNpy(const Image& image);
 
 // Through the OpenImageIO module, loaded at the first call of either and kept until the process ends.
 Result<std::vector<Layer>> decodeWithModule(Bytes file, const std::string& name, const DecodeLimits& limits);
-Result<std::vector<uint8_t>> encodeWithModule(const std::string& name, const std::vector<Layer>& layers);
+Result<std::vector<uint8_t>> encodeWithModule(const std::string& name, const std::vector<Layer>& layers,
+                                              const Placement& place);
 
 }  // namespace obscura::engine::codec

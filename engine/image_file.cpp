@@ -187,7 +187,7 @@ Result<FileFormat> fileFormatOf(const std::string& path) {
 bool holdsLayers(FileFormat format) { return format == FileFormat::Exr; }
 
 Result<std::vector<uint8_t>> encodeImage(FileFormat format, const std::vector<Layer>& layers,
-                                         const std::string& path) try {
+                                         const std::string& path, const Placement& place) try {
   if (auto error = checkLayers(format, layers, path)) return *error;
   const auto withPath = [&](Result<std::vector<uint8_t>> result) -> Result<std::vector<uint8_t>> {
     if (result) return result;
@@ -199,10 +199,10 @@ Result<std::vector<uint8_t>> encodeImage(FileFormat format, const std::vector<La
     case FileFormat::Png: return withPath(codec::encodePng(layers[0].image));
     case FileFormat::Pfm: return withPath(codec::encodePfm(layers[0].image));
     case FileFormat::Npy: return withPath(codec::encodeNpy(layers[0].image));
-    case FileFormat::Exr: return withPath(codec::encodeWithModule("layers.exr", layers));
+    case FileFormat::Exr: return withPath(codec::encodeWithModule("layers.exr", layers, place));
     case FileFormat::Other: break;
   }
-  return codec::encodeWithModule(path, layers);
+  return codec::encodeWithModule(path, layers, {});
 } catch (const std::bad_alloc&) {
   return outOfMemory(ErrorCode::CannotWrite, path);
 }

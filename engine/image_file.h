@@ -36,13 +36,20 @@ enum class FileFormat { Png, Exr, Pfm, Npy, Other };  // Other: whatever OpenIma
 Result<FileFormat> fileFormatOf(const std::string& path);  // by extension, case-insensitive; an unknown one is an error
 bool holdsLayers(FileFormat format);                       // true for EXR: many layers in one file
 
+// Where the layers lie in a larger image; by default they are all of it.
+struct Placement {
+  int x = 0, y = 0;
+  int imageWidth = 0, imageHeight = 0;  // 0: the layers' own
+};
+
 // Encodes to memory; layers: exactly one unless holdsLayers(format), all of one size there.
 //   PNG: 1-4 channels U8 or U16, anything else is an error.  PFM: 1 or 3 channels F32.
 //   NPY: any, as [H,W,C] little-endian ('<f4', '<u4', '<u2', '|u1'), format version 1.0.
-//   EXR: channels "layer.channel" (the layer named "color" has bare names R, G, B), float32 or uint32, ZIP.
+//   EXR: channels "layer.channel" (the layer named "color" has bare names R, G, B), float32 or uint32, ZIP; the layers are
+//        its data window, the larger image is its display window. The other formats know no place.
 //   Other: the extension of `path` decides.
 Result<std::vector<uint8_t>> encodeImage(FileFormat format, const std::vector<Layer>& layers,
-                                         const std::string& path = {});
+                                         const std::string& path = {}, const Placement& place = {});
 
 // Writes to a temporary file beside `path`, then renames: a reader never sees half an image, and a failure leaves
 // what was there before and no temporary. An existing file keeps its permissions; a link is followed; what exists

@@ -141,7 +141,8 @@ Result<std::vector<Layer>> decodeWithModule(Bytes file, const std::string& name,
   return std::move(receiver.layers);
 }
 
-Result<std::vector<uint8_t>> encodeWithModule(const std::string& name, const std::vector<Layer>& layers) {
+Result<std::vector<uint8_t>> encodeWithModule(const std::string& name, const std::vector<Layer>& layers,
+                                              const Placement& place) {
   const Result<const ObscuraOpenImageIO*> module = openImageIO();
   if (!module) return Error{ErrorCode::CannotWrite, module.error().message, name, {}};
   std::vector<std::vector<const char*>> names(layers.size());
@@ -152,10 +153,13 @@ Result<std::vector<uint8_t>> encodeWithModule(const std::string& name, const std
     plain.push_back({layers[i].name.c_str(), names[i].data(), image.width, image.height, image.channels,
                      int32_t(image.format), image.bytes.data()});
   }
+  const Image& first = layers[0].image;
+  const ObscuraPlacement placed{place.x, place.y, place.imageWidth ? place.imageWidth : first.width,
+                                place.imageHeight ? place.imageHeight : first.height};
   std::vector<uint8_t> bytes;
   const ObscuraByteSink sink{&bytes, receiveBytes};
   char error[512] = "";
-  if ((*module)->encode(name.c_str(), plain.data(), plain.size(), &sink, error, sizeof error) != 0)
+  if ((*module)->encode(name.c_str(), plain.data(), plain.size(), &placed, &sink, error, sizeof error) != 0)
     return Error{ErrorCode::CannotWrite, std::string("cannot encode: ") + error, name, {}};
   return bytes;
 }

@@ -168,11 +168,12 @@ void writeExr(ImageOutput& out, const ObscuraLayer* layers, size_t layerCount) {
       for (size_t p = 0; p < count; ++p) std::memcpy(&rows[p * channels + first], from + p * n, n * 4);
       first += n;
     }
-    if (!out.write_scanlines(y, end, 0, TypeDesc::UNKNOWN, rows.data())) throw Failure{out.geterror()};
+    if (!out.write_scanlines(out.spec().y + y, out.spec().y + end, 0, TypeDesc::UNKNOWN, rows.data())) throw Failure{out.geterror()};
   }
 }
 
-void encodeFile(const char* name, const ObscuraLayer* layers, size_t layerCount, const ObscuraByteSink& sink) {
+void encodeFile(const char* name, const ObscuraLayer* layers, size_t layerCount, const ObscuraPlacement& place,
+                const ObscuraByteSink& sink) {
   const std::unique_ptr<ImageOutput> out = ImageOutput::create(name);
   if (!out) throw Failure{"OpenImageIO cannot write this format: " + OIIO::geterror()};
   if (!out->supports("ioproxy")) throw Failure{std::string(out->format_name()) + " cannot be written to memory"};
@@ -190,6 +191,8 @@ void encodeFile(const char* name, const ObscuraLayer* layers, size_t layerCount,
         spec.channelformats.push_back(typeFrom(layers[i].format));
         ++spec.nchannels;
       }
+    spec.x = place.x, spec.y = place.y;
+    spec.full_width = place.imageWidth, spec.full_height = place.imageHeight;
     spec.attribute("compression", kCompression);
   }
   spec.attribute("DateTime", "1970:01:01 00:00:00");  // else the clock's: the same image is the same file
@@ -206,9 +209,9 @@ int decode(const void* file, size_t size, const char* name, const ObscuraLayerSi
   return report(error, errorSize, [&] { decodeFile(file, size, name, *sink); });
 }
 
-int encode(const char* name, const ObscuraLayer* layers, size_t layerCount, const ObscuraByteSink* sink, char* error,
-           size_t errorSize) {
-  return report(error, errorSize, [&] { encodeFile(name, layers, layerCount, *sink); });
+int encode(const char* name, const ObscuraLayer* layers, size_t layerCount, const ObscuraPlacement* place,
+           const ObscuraByteSink* sink, char* error, size_t errorSize) {
+  return report(error, errorSize, [&] { encodeFile(name, layers, layerCount, *place, *sink); });
 }
 
 }  // namespace

@@ -18,6 +18,11 @@ struct ObscuraLayer {
   const void* data;
 };
 
+// Where layers lie in a larger image, pixels; EXR only.
+struct ObscuraPlacement {
+  int32_t x, y, imageWidth, imageHeight;
+};
+
 // Where decode puts its layers: returns memory for the elements of `layer` (whose data is null), or null to stop.
 // All layers are announced before the first one is filled.
 struct ObscuraLayerSink {
@@ -37,11 +42,11 @@ struct ObscuraOpenImageIO {
   // its extension tells the format where the content does not (decode), or chooses it (encode). Thread-safe.
   int (*decode)(const void* file, size_t size, const char* name, const ObscuraLayerSink* sink, char* error,
                 size_t errorSize);
-  int (*encode)(const char* name, const ObscuraLayer* layers, size_t layerCount, const ObscuraByteSink* sink,
-                char* error, size_t errorSize);
+  int (*encode)(const char* name, const ObscuraLayer* layers, size_t layerCount, const ObscuraPlacement* place,
+                const ObscuraByteSink* sink, char* error, size_t errorSize);
 };
 
-enum { kObscuraOpenImageIOVersion = 1 };
+enum { kObscuraOpenImageIOVersion = 2 };
 
 // The module's only exported function.
 const ObscuraOpenImageIO* obscuraOpenImageIO(void);

@@ -20,7 +20,7 @@ struct DepthMap {
   const raster::GBuffer& g;
   VF bias, radius;
 
-  // Element of the nearest texel, clamped to the image.
+  // Element of the nearest texel, clamped to the G-buffer.
   HWY_INLINE VI texelOf(const V3& p) const {
     const DF d;
     const DI di;
@@ -32,13 +32,15 @@ struct DepthMap {
     }
     u = hn::Add(hn::Mul(u, hn::Set(d, projector.xScale)), hn::Set(d, projector.xCenter));
     v = hn::Add(hn::Mul(v, hn::Set(d, projector.yScale)), hn::Set(d, projector.yCenter));
-    // The conversion truncates, which is the floor of what is not negative; NaN becomes 0.
-    auto clamp = [&](VF c, int size) HWY_ATTR {
-      const VF last = hn::Set(d, float(size - 1));
-      c = hn::IfThenElseZero(hn::Gt(c, hn::Zero(d)), c);
-      return hn::ConvertTo(di, hn::IfThenElse(hn::Lt(c, last), c, last));
+    // The conversion truncates, which is the floor of what is not negative; NaN becomes the first.
+    auto clamp = [&](VF c, int first, int size) HWY_ATTR {
+      const VF least = hn::Set(d, float(first)), last = hn::Set(d, float(first + size - 1));
+      if (HWY_UNLIKELY(first < 0)) c = hn::Floor(c);
+      c = hn::IfThenElse(hn::Gt(c, least), c, least);
+      return hn::Sub(hn::ConvertTo(di, hn::IfThenElse(hn::Lt(c, last), c, last)), hn::Set(di, first));
     };
-    return hn::Add(hn::Mul(clamp(v, projector.height), hn::Set(di, int32_t(g.depth.stride()))), clamp(u, projector.width));
+    const VI column = clamp(u, projector.xFirst, projector.width), row = clamp(v, projector.yFirst, projector.height);
+    return hn::Add(hn::Mul(row, hn::Set(di, int32_t(g.depth.stride()))), column);
   }
 
   // Inner exactly when bias < z - z* < R; the upper bound keeps far foreground objects from casting silhouettes.
@@ -61,14 +63,14 @@ void transferRow(const TransferInput& in, int y, TransferSums& out) {
   const VF all = hn::Set(d, float(in.settings.samples)), zero = hn::Zero(d), one = hn::Set(d, 1.0f);
   const DepthMap map{projector, g, hn::Set(d, in.settings.bias), hn::Set(d, in.settings.radius)};
 
-  // The row's four rotations, repeated so that any vector of them can be loaded.
+  // The row's four rotations, repeated so that any vector of them can be loaded. The pattern is that of the whole image.
   HWY_ALIGN float cosines[32], sines[32];
   for (int x = 0; x < 32; ++x) {
-    const glm::vec2 r = in.settings.interleave ? rotations()[size_t((x & 3) + 4 * (y & 3))] : glm::vec2(1, 0);
+    const glm::vec2 r = in.settings.interleave ? rotations()[size_t(((x + projector.xFirst) & 3) + 4 * ((y + projector.yFirst) & 3))] : glm::vec2(1, 0);
     cosines[x] = r.x;
     sines[x] = r.y;
   }
-  const VF yRay = hn::Set(d, (float(y) + 0.5f - projector.yCenter) * projector.yInverse);
+  const VF yRay = hn::Set(d, (float(y + projector.yFirst) + 0.5f - projector.yCenter) * projector.yInverse);
 
   for (int x = 0; x < g.width; x += lanes) {
     const VF z = hn::LoadU(d, g.depth.row(y) + x);
@@ -76,7 +78,7 @@ void transferRow(const TransferInput& in, int y, TransferSums& out) {
                             hn::RebindMask(d, hn::Lt(hn::Iota(di, x), hn::Set(di, g.width))));
     VF numerator = all, denominator[3] = {all, all, all};
     if (!hn::AllFalse(d, seen)) {
-      VF px = hn::Mul(hn::Sub(hn::Add(hn::ConvertTo(d, hn::Iota(di, x)), hn::Set(d, 0.5f)), hn::Set(d, projector.xCenter)),
+      VF px = hn::Mul(hn::Sub(hn::Add(hn::ConvertTo(d, hn::Iota(di, x + projector.xFirst)), hn::Set(d, 0.5f)), hn::Set(d, projector.xCenter)),
                       hn::Set(d, projector.xInverse));
       VF py = yRay;
       if (projector.perspective) px = hn::Mul(px, z), py = hn::Mul(py, z);

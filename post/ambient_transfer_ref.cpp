@@ -15,12 +15,15 @@ struct Texel {
   int x, y;
 };
 
-// scPos -> ssPos: the nearest texel of the depth map, clamped at the image's border.
+// scPos -> ssPos: the nearest texel of the depth map, clamped at its edges.
 Texel project(const Projector& p, const glm::vec3& point) {
   const float inverse = p.perspective ? 1 / point.z : 1;
   const float u = std::floor(point.x * inverse * p.xScale + p.xCenter), v = std::floor(point.y * inverse * p.yScale + p.yCenter);
-  auto clamp = [](float c, int size) { return c > 0 ? (c < float(size) ? int(c) : size - 1) : 0; };
-  return {clamp(u, p.width), clamp(v, p.height)};
+  auto clamp = [](float c, int first, int size) {
+    const int end = first + size;
+    return (c > float(first) ? (c < float(end) ? int(c) : end - 1) : first) - first;
+  };
+  return {clamp(u, p.xFirst, p.width), clamp(v, p.yFirst, p.height)};
 }
 
 void shade(const TransferInput& in, int x, int y, TransferSums& out) {
@@ -34,7 +37,9 @@ void shade(const TransferInput& in, int x, int y, TransferSums& out) {
   const bool empty = !(depth < std::numeric_limits<float>::infinity());
   if (empty) num = n;
 
-  glm::vec3 cPos((float(x) + 0.5f - projector.xCenter) * projector.xInverse, (float(y) + 0.5f - projector.yCenter) * projector.yInverse, depth);
+  const int xImage = x + projector.xFirst, yImage = y + projector.yFirst;
+  glm::vec3 cPos((float(xImage) + 0.5f - projector.xCenter) * projector.xInverse,
+                 (float(yImage) + 0.5f - projector.yCenter) * projector.yInverse, depth);
   if (projector.perspective) cPos.x *= depth, cPos.y *= depth;
 
   // Tangent space: T = normalize(N x (0, 1, 0.01)), B = N x T.
@@ -45,7 +50,7 @@ void shade(const TransferInput& in, int x, int y, TransferSums& out) {
   const glm::vec3 B(N.y * T.z - N.z * T.y, N.z * T.x - N.x * T.z, N.x * T.y - N.y * T.x);
 
   // Interleaved sampling: rows (c, s, 0) and (s, -c, 0) of the noise map turn T and B.
-  const glm::vec2 r1 = s.interleave ? rotations()[size_t(x % 4 + 4 * (y % 4))] : glm::vec2(1, 0);
+  const glm::vec2 r1 = s.interleave ? rotations()[size_t((xImage & 3) + 4 * (yImage & 3))] : glm::vec2(1, 0);
   const glm::vec3 T1 = T * r1.x + B * r1.y, B1 = T * r1.y - B * r1.x;
 
   for (const glm::vec3& xyz : in.offsets) {

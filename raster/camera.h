@@ -21,6 +21,12 @@ struct Camera {
   float zFar = 0;                 // > zNear, or 0: none (perspective only)
 };
 
+// A rectangle in pixels of a camera's image: what is drawn of it. It may reach beyond the image (x, y negative too): that
+// is a border. Its pixels are, bit for bit, those that any other window shows in their place.
+struct Window {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
 // yFov in radians (0, pi), aspect = width / height of the image.
 Camera perspective(double yFov, double aspect, double zNear, double zFar = 0);
 // The whole image shows [-xMag, xMag] x [-yMag, yMag].

@@ -48,6 +48,17 @@ void checkMesh(const MeshView& m, size_t instance) {
     fail("instance ", instance, " has clusters of ", m.clusters->triangleCount, " triangles for ", m.triangleCount());
 }
 
+// All of it within half of kMaxImageSize from the image's centre; twice the distances, as half a pixel is no integer.
+void checkWindow(const Window& w, int width, int height) {
+  const auto fits = [](int first, int size, int image) {
+    const int64_t begin = int64_t(first) * 2 - image, end = begin + int64_t(size) * 2;
+    return size >= 1 && begin >= -kMaxImageSize && end <= kMaxImageSize;
+  };
+  if (!fits(w.x, w.width, width) || !fits(w.y, w.height, height))
+    fail("window of ", w.width, " x ", w.height, " pixels at ", w.x, ", ", w.y, " of an image of ", width, " x ", height,
+         ": it is empty, or reaches farther than ", kMaxImageSize / 2, " pixels from the image's centre");
+}
+
 }  // namespace
 
 void checkPlanes(const PlaneSet& planes) {
@@ -55,9 +66,10 @@ void checkPlanes(const PlaneSet& planes) {
     fail("separation ", planes.separation, " of depth2, not positive and finite");
 }
 
-void checkArguments(const DrawList& list, const Camera& c, int width, int height) {
+void checkArguments(const DrawList& list, const Camera& c, int width, int height, const std::optional<Window>& window) {
   if (width < 1 || height < 1 || width > kMaxImageSize || height > kMaxImageSize)
     fail("image of ", width, " x ", height, " pixels, not 1 ... ", kMaxImageSize);
+  if (window) checkWindow(*window, width, height);
   const bool perspective = c.projection == Projection::Perspective;
   for (float v : {c.xScale, c.yScale, c.xShift, c.yShift, c.zNear, c.zFar})
     if (!std::isfinite(v) || std::fabs(v) > 1e30f) fail("camera parameter ", v);

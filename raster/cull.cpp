@@ -33,12 +33,14 @@ bool sphereVisible(const View& view, const ViewSphere& sphere) {
   if (!(reach < kMostReach)) return true;  // the triangles decide one by one
   const float zView = -p[2];
   if (zView + reach < view.zNear || zView - reach > view.zFar) return false;
-  // Each side plane with a pixel to spare for snapping: +-(x scale) + zView (half + 1 pixel +- shift) >= 0.
+  // Each side plane with a pixel to spare for snapping: (x scale) + zView (shift - first + 1 pixel) >= 0 on the left and
+  // above, -(x scale) + zView (last + 1 pixel - shift) >= 0 on the right and below.
   const float scale[2] = {view.xScaleSub, view.yScaleSub}, shift[2] = {view.xShiftSub, view.yShiftSub};
-  const float half[2] = {float(view.xHalfSub + kSub), float(view.yHalfSub + kSub)};
+  const float toFirst[2] = {float(kSub - view.xFirstSub), float(kSub - view.yFirstSub)};
+  const float toLast[2] = {float(view.xLastSub + kSub), float(view.yLastSub + kSub)};
   for (int axis = 0; axis < 2; ++axis)
     for (float sign : {1.f, -1.f}) {
-      const float a = sign * scale[axis], b = half[axis] + sign * shift[axis];
+      const float a = sign * scale[axis], b = (sign > 0 ? toFirst : toLast)[axis] + sign * shift[axis];
       const float distance = view.perspective ? a * p[axis] + b * zView : a * p[axis] + b;
       const float length = view.perspective ? std::sqrt(a * a + b * b) : std::fabs(a);
       const float slack = view.perspective ? 0 : b * kSlack;
@@ -56,7 +58,7 @@ ScreenBound screenBound(const View& view, const ViewSphere& s) {
   if (!(s.reach < kMostReach) || (view.perspective && !(first > s.reach * kSlack))) return b;
   b.nearestKey = view.perspective ? 1 / first * (1 + kSlack) : -first + std::fabs(first) * kSlack;
   const float scale[2] = {view.xScaleSub, view.yScaleSub}, shift[2] = {view.xShiftSub, view.yShiftSub};
-  const int32_t half[2] = {view.xHalfSub, view.yHalfSub};
+  const int32_t origin[2] = {view.xFirstSub, view.yFirstSub};
   int* const range[2][2] = {{&b.x0, &b.x1}, {&b.y0, &b.y1}};
   for (int axis = 0; axis < 2; ++axis) {
     // x / z of the box around the sphere is least and greatest in its corners.
@@ -65,7 +67,7 @@ ScreenBound screenBound(const View& view, const ViewSphere& s) {
     float from = least * scale[axis] + shift[axis], to = most * scale[axis] + shift[axis];
     if (from > to) std::swap(from, to);
     const float slack = (std::fabs(from) + std::fabs(to)) * kSlack + 2 * kSub;  // a pixel for snapping, one for rounding
-    const auto pixel = [&](float sub) { return int(std::floor((sub + float(half[axis])) * (1.0f / kSub))); };
+    const auto pixel = [&](float sub) { return int(std::floor((sub - float(origin[axis])) * (1.0f / kSub))); };
     const float limit = 4.0f * kMaxImageSize * kSub;
     *range[axis][0] = std::max(*range[axis][0], pixel(std::clamp(from - slack, -limit, limit)));
     *range[axis][1] = std::min(*range[axis][1], pixel(std::clamp(to + slack, -limit, limit)));
@@ -74,10 +76,10 @@ ScreenBound screenBound(const View& view, const ViewSphere& s) {
 }
 
 ScreenBound boundOf(const View& view, const TransformedVertices& v) {
-  const auto first = [](int32_t sub, int32_t half) { return std::max((sub + half + kSub / 2 - 1) >> kSubBits, 0); };
-  const auto last = [](int32_t sub, int32_t half, int size) { return std::min((sub + half - kSub / 2) >> kSubBits, size - 1); };
-  return {first(v.xLeast, view.xHalfSub), first(v.yLeast, view.yHalfSub), last(v.xGreatest, view.xHalfSub, view.width),
-          last(v.yGreatest, view.yHalfSub, view.height), v.nearestKey};
+  const auto first = [](int32_t sub, int32_t origin) { return std::max((sub - origin + kSub / 2 - 1) >> kSubBits, 0); };
+  const auto last = [](int32_t sub, int32_t origin, int size) { return std::min((sub - origin - kSub / 2) >> kSubBits, size - 1); };
+  return {first(v.xLeast, view.xFirstSub), first(v.yLeast, view.yFirstSub), last(v.xGreatest, view.xFirstSub, view.width),
+          last(v.yGreatest, view.yFirstSub, view.height), v.nearestKey};
 }
 
 bool clusterFacesEye(const Draw& draw, const Cluster& cluster) {

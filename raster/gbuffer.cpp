@@ -27,4 +27,21 @@ bool GBuffer::has(const PlaneSet& planes) const {
          planes.material != material.empty() && planes.depth2 != depth2.empty() && planes.depthBack != depthBack.empty();
 }
 
+void cutOut(const GBuffer& from, const Window& part, GBuffer& to) {
+  to.width = part.width;
+  to.height = part.height;
+  cutOut(from.depth, part, to.depth);
+  for (int c = 0; c < 3; ++c) {
+    cutOut(from.normal[c], part, to.normal[c]);
+    cutOut(from.albedo[c], part, to.albedo[c]);
+    cutOut(from.emissive[c], part, to.emissive[c]);
+    cutOut(from.position[c], part, to.position[c]);
+  }
+  cutOut(from.triangle, part, to.triangle);
+  cutOut(from.instance, part, to.instance);
+  cutOut(from.material, part, to.material);
+  cutOut(from.depth2, part, to.depth2);
+  cutOut(from.depthBack, part, to.depthBack);
+}
+
 }  // namespace obscura::raster

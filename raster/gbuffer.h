@@ -1,8 +1,10 @@
 // The G-buffer: what is seen in each pixel, one plane per scalar.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
+#include "obscura/raster/camera.h"
 #include "obscura/raster/draw.h"
 #include "obscura/raster/plane.h"
 
@@ -49,5 +51,14 @@ struct GBuffer {
   GBuffer(int width, int height, const PlaneSet& planes);
   bool has(const PlaneSet& planes) const;  // these are there, and no others
 };
+
+// The part of `from` that lies in the window (inside of it, counted from its own first pixel); planes that `from` does not
+// hold are empty. Memory of the right size is kept.
+template <class T>
+void cutOut(const Plane<T>& from, const Window& part, Plane<T>& to) {
+  to.resize(from.empty() ? 0 : part.width, from.empty() ? 0 : part.height);
+  for (int y = 0; y < to.height(); ++y) std::copy_n(from.row(part.y + y) + part.x, part.width, to.row(y));
+}
+void cutOut(const GBuffer& from, const Window& part, GBuffer& to);
 
 }  // namespace obscura::raster

@@ -84,6 +84,7 @@ struct Rasterizer::State {
   explicit State(const Settings& s)
       : settings(s), target(chooseTarget(s.target)), tileBits(bitsOfTile(s.tile)), parallel(s.threads) {}
 
+  void render(const DrawList& list, const View& view, const Camera& camera, const PlaneSet& planes, GBuffer& out);
   void beginFrame(bool inRounds);
   std::vector<const Draw*> visibleInstances(const View& view, const std::vector<Draw>& draws);
   std::vector<Candidate> findCandidates(const View& view, Span<const Draw* const> draws);
@@ -274,23 +275,32 @@ void Rasterizer::State::finishTiles(const SurfaceContext& context, const PlaneSe
   });
 }
 
-void Rasterizer::render(const DrawList& list, const Camera& camera, int width, int height, const PlaneSet& planes, GBuffer& out) {
-  checkArguments(list, camera, width, height);
+void Rasterizer::render(const DrawList& list, const Camera& camera, int width, int height, const PlaneSet& planes, GBuffer& out,
+                        const std::optional<Window>& window) {
+  checkArguments(list, camera, width, height, window);
   checkPlanes(planes);
   const FloatEnvironment environment;
-  State& s = *state_;
-  const auto start = std::chrono::steady_clock::now();
-  if (out.width != width || out.height != height || !out.has(planes)) out = GBuffer(width, height, planes);
-  s.statistics = {};
-  s.timings = {};
-  if (s.workers.empty()) {
-    s.bins.resize(size_t(s.parallel.workers()));
-    s.awayBins.resize(size_t(s.parallel.workers()));
-    for (int i = 0; i < s.parallel.workers(); ++i) s.workers.push_back(std::make_unique<Worker>());
-  }
-  for (auto& w : s.workers) w->statistics = {};
+  const Window wanted = window.value_or(Window{0, 0, width, height});
+  const Window drawn{wanted.x & ~(kCell - 1), wanted.y & ~(kCell - 1), wanted.width + (wanted.x & (kCell - 1)), wanted.height + (wanted.y & (kCell - 1))};
+  if (drawn.width == wanted.width && drawn.height == wanted.height) return state_->render(list, makeView(camera, width, height, drawn), camera, planes, out);
+  // Cells are those of the whole image: their planes are what attributes are computed from.
+  GBuffer whole;
+  state_->render(list, makeView(camera, width, height, drawn), camera, planes, whole);
+  cutOut(whole, {wanted.x - drawn.x, wanted.y - drawn.y, wanted.width, wanted.height}, out);
+}
 
-  const View view = makeView(camera, width, height);
+void Rasterizer::State::render(const DrawList& list, const View& view, const Camera& camera, const PlaneSet& planes, GBuffer& out) {
+  const auto start = std::chrono::steady_clock::now();
+  if (out.width != view.width || out.height != view.height || !out.has(planes)) out = GBuffer(view.width, view.height, planes);
+  statistics = {};
+  timings = {};
+  if (workers.empty()) {
+    bins.resize(size_t(parallel.workers()));
+    awayBins.resize(size_t(parallel.workers()));
+    for (int i = 0; i < parallel.workers(); ++i) workers.push_back(std::make_unique<Worker>());
+  }
+  for (auto& w : workers) w->statistics = {};
+
   std::vector<Draw> draws = makeDraws(list, camera);
   std::map<const MeshView*, Clusters> made;  // of meshes that came without
   for (Draw& d : draws) {
@@ -299,31 +309,31 @@ void Rasterizer::render(const DrawList& list, const Camera& camera, int width, i
     if (fresh) entry->second = buildClusters(d.mesh->positions, d.mesh->indices);
     d.clusters = &entry->second;
   }
-  s.grid = TileGrid(width, height, s.tileBits);
-  s.keep = planes.depthsAlone() ? Keep::Key : Keep::Visibility;
-  const SurfaceContext context{&view, draws, list.textures, s.srgb.linear};
-  s.beginFrame(false);
-  if (planes.depthBack) s.setupAway(view, awayDraws(draws));
-  for (Bins& b : s.bins) b.reset(s.grid);
-  const std::vector<const Draw*> visible = s.visibleInstances(view, draws);
+  grid = TileGrid(view.width, view.height, tileBits);
+  keep = planes.depthsAlone() ? Keep::Key : Keep::Visibility;
+  const SurfaceContext context{&view, draws, list.textures, srgb.linear};
+  beginFrame(false);
+  if (planes.depthBack) setupAway(view, awayDraws(draws));
+  for (Bins& b : bins) b.reset(grid);
+  const std::vector<const Draw*> visible = visibleInstances(view, draws);
   size_t clusters = 0;
   for (const Draw* draw : visible) clusters += draw->clusters->clusters.size();
   // What lies behind the first layer must not be hidden by it.
-  s.beginFrame(s.settings.skip && clusters >= kFewClusters && int64_t(width) * height <= kMostKept && !planes.depth2 && !planes.depthBack);
+  beginFrame(settings.skip && clusters >= kFewClusters && int64_t(view.width) * view.height <= kMostKept && !planes.depth2 && !planes.depthBack);
 
   auto lap = [last = start](double& milliseconds) mutable {
     const auto now = std::chrono::steady_clock::now();
     milliseconds += std::chrono::duration<double, std::milli>(now - std::exchange(last, now)).count();
   };
-  size_t look = s.rounds ? kFirstClusters : clusters;
+  size_t look = rounds ? kFirstClusters : clusters;
   for (size_t from = 0, to = 0; from < visible.size(); from = to, look *= 2) {
     for (size_t count = 0; to < visible.size() && (to == from || count + visible[to]->clusters->clusters.size() <= look); ++to)
       count += visible[to]->clusters->clusters.size();
-    if (from > 0) s.drawRound(context);
-    lap(s.timings.tilesMs);
-    std::vector<Candidate> found = s.findCandidates(view, {visible.data() + from, to - from});
+    if (from > 0) drawRound(context);
+    lap(timings.tilesMs);
+    std::vector<Candidate> found = findCandidates(view, {visible.data() + from, to - from});
     Span<const Candidate> front = found, rest;
-    if (s.rounds && !found.empty()) {
+    if (rounds && !found.empty()) {
       // By a threshold, so that both parts stay in the order of the memory that they read.
       std::vector<float> keys;
       for (const Candidate& c : found) keys.push_back(c.nearestKey);
@@ -333,17 +343,17 @@ void Rasterizer::render(const DrawList& list, const Camera& camera, int width, i
       front = {found.data(), size_t(middle - found.begin())};
       rest = {found.data() + front.size(), found.size() - front.size()};
     }
-    s.setupClusters(view, front, false, s.bins);
-    lap(s.timings.setupMs);
+    setupClusters(view, front, false, bins);
+    lap(timings.setupMs);
     if (rest.empty()) continue;
-    s.drawRound(context);
-    lap(s.timings.tilesMs);
-    s.setupClusters(view, rest, true, s.bins);
-    lap(s.timings.setupMs);
+    drawRound(context);
+    lap(timings.tilesMs);
+    setupClusters(view, rest, true, bins);
+    lap(timings.setupMs);
   }
-  s.finishTiles(context, planes, out);
-  lap(s.timings.tilesMs);
-  for (const auto& w : s.workers) s.statistics.add(w->statistics);
+  finishTiles(context, planes, out);
+  lap(timings.tilesMs);
+  for (const auto& w : workers) statistics.add(w->statistics);
 }
 
 void Rasterizer::renderDepth(const DrawList& list, const Camera& camera, int width, int height, Plane<float>& depth) {

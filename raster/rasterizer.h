@@ -7,6 +7,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "obscura/raster/camera.h"
 #include "obscura/raster/draw.h"
@@ -37,13 +38,16 @@ class Rasterizer {
   Rasterizer(Rasterizer&&) noexcept;
   Rasterizer& operator=(Rasterizer&&) noexcept;
 
-  // width, height: 1 ... kMaxImageSize. `out` is allocated anew unless it has the right size and just these planes already.
+  // width, height: of the camera's image, 1 ... kMaxImageSize. `out` becomes the window of it, without one the whole; it is
+  // allocated anew unless it has the right size and just these planes already.
   // Throws std::invalid_argument, naming the value, where the list contradicts itself (an index that is out of range, spans
-  // of different length, a camera without extent), std::bad_alloc without memory. The vertex indices of a mesh that
-  // brings clusters are taken to be those that buildClusters has checked. Bad geometry never throws: it is dropped and
-  // counted.
-  // Where only depths are asked for (PlaneSet::depthsAlone) the way is shorter: no ids, no resolve.
-  void render(const DrawList& list, const Camera& camera, int width, int height, const PlaneSet& planes, GBuffer& out);
+  // of different length, a camera without extent, a window that reaches beyond the guard band), std::bad_alloc without memory. The
+  // vertex indices of a mesh that brings clusters are taken to be those that buildClusters has checked. Bad geometry never
+  // throws: it is dropped and counted.
+  // Where only depths are asked for (PlaneSet::depthsAlone) the way is shorter: no ids, no resolve. Windows that begin at
+  // multiples of kCell pixels take less: others are cut out of a larger one.
+  void render(const DrawList& list, const Camera& camera, int width, int height, const PlaneSet& planes, GBuffer& out,
+              const std::optional<Window>& window = {});
 
   // The depth plane of render() alone, bit for bit, for shadow maps: a light's camera in, its depth map out. `depth` gets
   // this size and keeps its memory if it has it already. Throws as render() does.
@@ -59,10 +63,12 @@ class Rasterizer {
 
 // The same by the scalar twins: every triangle against every pixel of its box, one thread, no tiles, no culling, no
 // SIMD. Short and slow; equal to Rasterizer::render bit for bit.
-void renderReference(const DrawList& list, const Camera& camera, int width, int height, const PlaneSet& planes, GBuffer& out);
+void renderReference(const DrawList& list, const Camera& camera, int width, int height, const PlaneSet& planes, GBuffer& out,
+                     const std::optional<Window>& window = {});
 
 // What render() throws about; the reference calls it too.
-void checkArguments(const DrawList& list, const Camera& camera, int width, int height);
+void checkArguments(const DrawList& list, const Camera& camera, int width, int height,
+                    const std::optional<Window>& window = {});
 void checkPlanes(const PlaneSet& planes);
 
 }  // namespace obscura::raster

@@ -59,10 +59,10 @@ void drawSnapped(const SurfaceContext& context, const Draw& draw, uint32_t trian
   if (area < 0) std::swap(v[1], v[2]);
 
   const auto columns = std::minmax({v[0].x, v[1].x, v[2].x}), rows = std::minmax({v[0].y, v[1].y, v[2].y});
-  auto pixel = [](int64_t sub, int half, int size) { return int(std::clamp<int64_t>((sub + half) / kSub, 0, size - 1)); };
+  auto pixel = [](int64_t sub, int firstSub, int size) { return int(std::clamp<int64_t>((sub - firstSub) / kSub, 0, size - 1)); };
   const uint32_t id = draw.firstTriangle + triangle;
-  for (int y = pixel(rows.first, view.yHalfSub, view.height); y <= pixel(rows.second, view.yHalfSub, view.height); ++y)
-    for (int x = pixel(columns.first, view.xHalfSub, view.width); x <= pixel(columns.second, view.xHalfSub, view.width); ++x) {
+  for (int y = pixel(rows.first, view.yFirstSub, view.height); y <= pixel(rows.second, view.yFirstSub, view.height); ++y)
+    for (int x = pixel(columns.first, view.xFirstSub, view.width); x <= pixel(columns.second, view.xFirstSub, view.width); ++x) {
       const Point c(view.xCenterSub(x), view.yCenterSub(y));
       if (!covers(v, c)) continue;
       float key = vertex[0].key + (gx * float(c.x - vertex[0].at.x) + gy * float(c.y - vertex[0].at.y));
@@ -179,18 +179,19 @@ void layersBehind(const SurfaceContext& context, const Visibility& first, float 
 
 }  // namespace ref
 
-void renderReference(const DrawList& list, const Camera& camera, int width, int height, const PlaneSet& planes, GBuffer& out) {
-  checkArguments(list, camera, width, height);
+void renderReference(const DrawList& list, const Camera& camera, int width, int height, const PlaneSet& planes, GBuffer& out,
+                     const std::optional<Window>& window) {
+  checkArguments(list, camera, width, height, window);
   checkPlanes(planes);
   const FloatEnvironment environment;
   const SrgbTable srgb;
-  const View view = makeView(camera, width, height);
+  const View view = makeView(camera, width, height, window);
   const std::vector<Draw> draws = makeDraws(list, camera);
   const SurfaceContext context{&view, draws, list.textures, srgb.linear};
   const ref::Visibility visibility = ref::visibility(context);
-  out = GBuffer(width, height, planes);
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) ref::resolvePixel(context, visibility.triangle.at(x, y), visibility.key.at(x, y), x, y, out);
+  out = GBuffer(view.width, view.height, planes);
+  for (int y = 0; y < view.height; ++y)
+    for (int x = 0; x < view.width; ++x) ref::resolvePixel(context, visibility.triangle.at(x, y), visibility.key.at(x, y), x, y, out);
   ref::layersBehind(context, visibility, planes.separation, out);
 }
 

@@ -95,7 +95,7 @@ HWY_INLINE Corners gatherCorners(const TransformedVertices& v, VI packed) {
   return c;
 }
 
-// The pixels whose centres lie in the bounding box, within the image, and its extents.
+// The pixels whose centres lie in the bounding box, within the window, and its extents.
 struct Box {
   VI x0, y0, x1, y1;
   VI xExtent, yExtent;
@@ -106,14 +106,14 @@ HWY_INLINE Box boundingBox(const View& view, const Corners& c) {
   auto min3 = [](const VI v[3]) HWY_ATTR { return hn::Min(hn::Min(v[0], v[1]), v[2]); };
   auto max3 = [](const VI v[3]) HWY_ATTR { return hn::Max(hn::Max(v[0], v[1]), v[2]); };
   const VI minX = min3(c.x), maxX = max3(c.x), minY = min3(c.y), maxY = max3(c.y);
-  auto first = [&](VI v, int32_t half) HWY_ATTR {
-    return hn::Max(hn::ShiftRight<kSubBits>(hn::Add(v, hn::Set(d, half + kSub / 2 - 1))), hn::Zero(d));
+  auto first = [&](VI v, int32_t firstSub) HWY_ATTR {
+    return hn::Max(hn::ShiftRight<kSubBits>(hn::Add(v, hn::Set(d, kSub / 2 - 1 - firstSub))), hn::Zero(d));
   };
-  auto last = [&](VI v, int32_t half, int size) HWY_ATTR {
-    return hn::Min(hn::ShiftRight<kSubBits>(hn::Add(v, hn::Set(d, half - kSub / 2))), hn::Set(d, size - 1));
+  auto last = [&](VI v, int32_t firstSub, int size) HWY_ATTR {
+    return hn::Min(hn::ShiftRight<kSubBits>(hn::Add(v, hn::Set(d, -kSub / 2 - firstSub))), hn::Set(d, size - 1));
   };
-  return {first(minX, view.xHalfSub),           first(minY, view.yHalfSub), last(maxX, view.xHalfSub, view.width),
-          last(maxY, view.yHalfSub, view.height), hn::Sub(maxX, minX),        hn::Sub(maxY, minY)};
+  return {first(minX, view.xFirstSub), first(minY, view.yFirstSub), last(maxX, view.xFirstSub, view.width),
+          last(maxY, view.yFirstSub, view.height), hn::Sub(maxX, minX), hn::Sub(maxY, minY)};
 }
 
 // Edge functions at the centre of pixel (x, y), at most a block away from the box; see triangle.h. Only for small
@@ -127,8 +127,8 @@ HWY_INLINE Edges edgeFunctions(const View& view, const Corners& c, VI x, VI y, V
   const MI clockwise = hn::Gt(area, hn::Zero(d));
   const VI px[3] = {c.x[0], hn::IfThenElse(clockwise, c.x[1], c.x[2]), hn::IfThenElse(clockwise, c.x[2], c.x[1])};
   const VI py[3] = {c.y[0], hn::IfThenElse(clockwise, c.y[1], c.y[2]), hn::IfThenElse(clockwise, c.y[2], c.y[1])};
-  const VI cx = hn::Add(hn::ShiftLeft<kSubBits>(x), hn::Set(d, kSub / 2 - view.xHalfSub));
-  const VI cy = hn::Add(hn::ShiftLeft<kSubBits>(y), hn::Set(d, kSub / 2 - view.yHalfSub));
+  const VI cx = hn::Add(hn::ShiftLeft<kSubBits>(x), hn::Set(d, kSub / 2 + view.xFirstSub));
+  const VI cy = hn::Add(hn::ShiftLeft<kSubBits>(y), hn::Set(d, kSub / 2 + view.yFirstSub));
   Edges out;
   for (int p = 0; p < 3; ++p) {
     const int q = p == 2 ? 0 : p + 1;
@@ -299,8 +299,8 @@ void SetupCluster(const View& view, const Draw& draw, const Cluster& cluster, co
     hn::Store(pair(edges.b[0], edges.b[1]), di, s.b);
     hn::Store(pair(bx, by), di, s.block);
     hn::Store(pair(hn::Sub(hn::ShiftRight<kBlockBits>(box.x1), bx), hn::Sub(hn::ShiftRight<kBlockBits>(box.y1), by)), di, s.blocks);
-    const VI cx = hn::Add(hn::ShiftLeft<kSubBits>(x), hn::Set(di, kSub / 2 - view.xHalfSub));
-    const VI cy = hn::Add(hn::ShiftLeft<kSubBits>(y), hn::Set(di, kSub / 2 - view.yHalfSub));
+    const VI cx = hn::Add(hn::ShiftLeft<kSubBits>(x), hn::Set(di, kSub / 2 + view.xFirstSub));
+    const VI cy = hn::Add(hn::ShiftLeft<kSubBits>(y), hn::Set(di, kSub / 2 + view.yFirstSub));
     hn::Store(hn::ConvertTo(d, hn::Sub(cx, c.x[0])), d, s.xFromP0);
     hn::Store(hn::ConvertTo(d, hn::Sub(cy, c.y[0])), d, s.yFromP0);
     hn::Store(hn::Sub(c.x[1], c.x[0]), di, s.dx1);

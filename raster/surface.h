@@ -22,7 +22,8 @@ struct SurfaceContext {
   const float* srgbToLinear = nullptr;  // SrgbTable::linear
 };
 
-constexpr int kCellBits = 4, kCell = 1 << kCellBits;  // pixels
+// Pixels. Cells begin at multiples of it in the whole image, and so does every window that the rasterizer draws.
+constexpr int kCellBits = 4, kCell = 1 << kCellBits;
 
 // b_i = c[i] + (gx[i] dx + gy[i] dy), dx and dy in pixels from the centre of the cell's upper left pixel; all of them
 // scaled by one positive factor that makes the largest coefficient 1. NaN where a vertex is not finite or all are 0.

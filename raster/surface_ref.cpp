@@ -18,7 +18,7 @@ SurfacePoint seePixel(const View& view, const Draw& draw, uint32_t triangle, int
     p.vertex[i] = draw.mesh->indices[size_t(triangle) * 3 + size_t(i)];
     p.object[i] = draw.mesh->positions[p.vertex[i]];
   }
-  const int left = x - x % kCell, top = y - y % kCell;
+  const int left = x - ((view.left + x) & (kCell - 1)), top = y - ((view.top + y) & (kCell - 1));
   p.planes = weightPlanes(view, draw, p.vertex, left, top);
   float b[3];
   for (int i = 0; i < 3; ++i) b[i] = p.planes.c[i] + (p.planes.gx[i] * float(x - left) + p.planes.gy[i] * float(y - top));

@@ -55,10 +55,10 @@ void TransformVertices(const View& view, const Draw& draw, const float* x, const
     auto side = [&](MI outside, Outcode c) HWY_ATTR {
       code = hn::Or(code, hn::IfThenElseZero(hn::And(outside, hn::RebindMask(di, usable)), hn::Set(di, int32_t(c))));
     };
-    side(hn::Lt(xSub, hn::Set(di, -view.xHalfSub)), kLeft);
-    side(hn::Gt(xSub, hn::Set(di, view.xHalfSub)), kRight);
-    side(hn::Lt(ySub, hn::Set(di, -view.yHalfSub)), kAbove);
-    side(hn::Gt(ySub, hn::Set(di, view.yHalfSub)), kBelow);
+    side(hn::Lt(xSub, hn::Set(di, view.xFirstSub)), kLeft);
+    side(hn::Gt(xSub, hn::Set(di, view.xLastSub)), kRight);
+    side(hn::Lt(ySub, hn::Set(di, view.yFirstSub)), kAbove);
+    side(hn::Gt(ySub, hn::Set(di, view.yLastSub)), kBelow);
 
     const MI real = hn::Lt(hn::Iota(di, i), hn::Set(di, count));  // the padding repeats a vertex, but need not
     xLeast = hn::IfThenElse(real, hn::Min(xLeast, xSub), xLeast);

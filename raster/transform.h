@@ -10,7 +10,7 @@
 
 namespace obscura::raster {
 
-// Why a vertex cannot be used as it is (first three), or on which side of the image it lies.
+// Why a vertex cannot be used as it is (first three), or on which side of the window it lies.
 enum Outcode : int32_t {
   kBeforeNear = 1,  // not zView >= zNear, NaN included
   kBeyondFar = 2,

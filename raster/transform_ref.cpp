@@ -28,10 +28,10 @@ void transformVerticesRef(const View& view, const Draw& draw, const float* x, co
     // The default rounding mode makes nearbyint round halves to even.
     out.xSub[i] = usable ? int32_t(std::nearbyint(xs)) : 0;
     out.ySub[i] = usable ? int32_t(std::nearbyint(ys)) : 0;
-    if (usable && out.xSub[i] < -view.xHalfSub) code |= kLeft;
-    if (usable && out.xSub[i] > view.xHalfSub) code |= kRight;
-    if (usable && out.ySub[i] < -view.yHalfSub) code |= kAbove;
-    if (usable && out.ySub[i] > view.yHalfSub) code |= kBelow;
+    if (usable && out.xSub[i] < view.xFirstSub) code |= kLeft;
+    if (usable && out.xSub[i] > view.xLastSub) code |= kRight;
+    if (usable && out.ySub[i] < view.yFirstSub) code |= kAbove;
+    if (usable && out.ySub[i] > view.yLastSub) code |= kBelow;
     out.key[i] = view.perspective ? w : p[2];
     out.code[i] = code;
     out.anyCode |= code;

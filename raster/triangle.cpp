@@ -12,10 +12,10 @@ SetupResult setupTriangle(const View& view, const SnappedTriangle& t, int facing
 
   const auto [minX, maxX] = std::minmax({t.x[0], t.x[1], t.x[2]});
   const auto [minY, maxY] = std::minmax({t.y[0], t.y[1], t.y[2]});
-  out.x0 = std::max((minX + view.xHalfSub + kSub / 2 - 1) >> kSubBits, 0);
-  out.y0 = std::max((minY + view.yHalfSub + kSub / 2 - 1) >> kSubBits, 0);
-  out.x1 = std::min((maxX + view.xHalfSub - kSub / 2) >> kSubBits, view.width - 1);
-  out.y1 = std::min((maxY + view.yHalfSub - kSub / 2) >> kSubBits, view.height - 1);
+  out.x0 = std::max((minX - view.xFirstSub + kSub / 2 - 1) >> kSubBits, 0);
+  out.y0 = std::max((minY - view.yFirstSub + kSub / 2 - 1) >> kSubBits, 0);
+  out.x1 = std::min((maxX - view.xFirstSub - kSub / 2) >> kSubBits, view.width - 1);
+  out.y1 = std::min((maxY - view.yFirstSub - kSub / 2) >> kSubBits, view.height - 1);
   if (out.x0 > out.x1 || out.y0 > out.y1) return SetupResult::Outside;
 
   const int order[3] = {0, area > 0 ? 1 : 2, area > 0 ? 2 : 1};

@@ -28,7 +28,7 @@ static_assert(int64_t(2) * kSmallExtentSub * (kSmallExtentSub + kBlock * kSub) <
 struct alignas(64) SmallTriangle {
   int32_t e[3];     // at the centre of the upper left pixel of block (x, y)
   int32_t a, b;     // two of 16 bits, edge 0 lower and edge 1 upper; those of edge 2 make the sums zero
-  int32_t block;    // x lower, y upper: first block that the covered centres' box touches, inside the image
+  int32_t block;    // x lower, y upper: first block that the covered centres' box touches, inside the window
   int32_t blocks;   // columns lower, rows upper: how many blocks it touches, less one
   float key0, xGradient, yGradient;  // gradients per sub-pixel
   float xFromP0, yFromP0;            // centre of that pixel minus p0, sub-pixels, exact
@@ -48,7 +48,7 @@ static_assert(int64_t(2) * (2ll * kGuardSub) * (2ll * kGuardSub) <= (int64_t(1) 
 struct LargeTriangle {
   int64_t e[3];  // E + bias at the centre of pixel (0, 0), not yet divided
   int32_t a[3], b[3];
-  int32_t x0, y0, x1, y1;  // box of covered centres inside the image, inclusive, pixels
+  int32_t x0, y0, x1, y1;  // box of covered centres inside the window, inclusive, pixels
   float key0, xGradient, yGradient;
   int32_t p0x, p0y;
   float keyMin, keyMax;

@@ -33,17 +33,23 @@ Cofactors cofactors(const glm::dmat4& a) {
 
 }  // namespace
 
-View makeView(const Camera& camera, int width, int height) {
+View makeView(const Camera& camera, int width, int height, const std::optional<Window>& window) {
+  const Window w = window.value_or(Window{0, 0, width, height});
+  const int32_t xHalfSub = width * (kSub / 2), yHalfSub = height * (kSub / 2);
   View v;
-  v.width = width;
-  v.height = height;
+  v.left = w.x;
+  v.top = w.y;
+  v.width = w.width;
+  v.height = w.height;
   v.perspective = camera.projection == Projection::Perspective;
-  v.xHalfSub = width * (kSub / 2);
-  v.yHalfSub = height * (kSub / 2);
-  v.xScaleSub = camera.xScale * float(v.xHalfSub);
-  v.yScaleSub = -(camera.yScale * float(v.yHalfSub));
-  v.xShiftSub = camera.xShift * float(v.xHalfSub);
-  v.yShiftSub = -(camera.yShift * float(v.yHalfSub));
+  v.xFirstSub = w.x * kSub - xHalfSub;
+  v.yFirstSub = w.y * kSub - yHalfSub;
+  v.xLastSub = v.xFirstSub + w.width * kSub;
+  v.yLastSub = v.yFirstSub + w.height * kSub;
+  v.xScaleSub = camera.xScale * float(xHalfSub);
+  v.yScaleSub = -(camera.yScale * float(yHalfSub));
+  v.xShiftSub = camera.xShift * float(xHalfSub);
+  v.yShiftSub = -(camera.yShift * float(yHalfSub));
   v.zNear = camera.zNear;
   v.zFar = camera.zFar > 0 ? camera.zFar : std::numeric_limits<float>::max();
   return v;

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "obscura/raster/camera.h"
@@ -20,20 +21,22 @@ namespace obscura::raster {
 constexpr int kSubBits = 8;                       // 1/256 pixel
 constexpr int32_t kSub = 1 << kSubBits;
 constexpr int32_t kGuardSub = 1 << 21;            // |x|, |y| of any vertex that is rasterized: 8192 pixels
-constexpr int kMaxImageSize = 16384;              // pixels a side
-static_assert(kMaxImageSize / 2 * kSub <= kGuardSub, "the image lies inside the guard band");
+constexpr int kMaxImageSize = 16384;              // pixels a side; a window reaches no farther from the centre, either
+static_assert(kMaxImageSize / 2 * kSub <= kGuardSub, "image and window lie inside the guard band");
 
 struct View {
-  int width = 0, height = 0;
+  int left = 0, top = 0;                          // first pixel of the window, in the whole image
+  int width = 0, height = 0;                      // of the window
   bool perspective = true;
   // xSub = xView / zView * xScaleSub + xShiftSub  (orthographic: without the division); y points down.
   float xScaleSub = 0, yScaleSub = 0, xShiftSub = 0, yShiftSub = 0;
   float zNear = 0, zFar = 0;                      // zFar is the largest float where the camera has none: infinity lies beyond
-  int32_t xHalfSub = 0, yHalfSub = 0;             // half the image: pixel (0, 0) begins at (-xHalfSub, -yHalfSub)
+  int32_t xFirstSub = 0, yFirstSub = 0;           // upper left corner of the window, from the centre of the whole image
+  int32_t xLastSub = 0, yLastSub = 0;             // its lower right corner
 
-  // Centre of a pixel, relative to the centre of the image.
-  int32_t xCenterSub(int x) const { return x * kSub + kSub / 2 - xHalfSub; }
-  int32_t yCenterSub(int y) const { return y * kSub + kSub / 2 - yHalfSub; }
+  // Centre of a pixel of the window, relative to the centre of the image.
+  int32_t xCenterSub(int x) const { return x * kSub + kSub / 2 + xFirstSub; }
+  int32_t yCenterSub(int y) const { return y * kSub + kSub / 2 + yFirstSub; }
 };
 
 // One instance as this frame sees it.
@@ -54,7 +57,8 @@ struct Draw {
   uint32_t materialIndex = 0;
 };
 
-View makeView(const Camera& camera, int width, int height);
+// width, height: of the whole image, which alone decides about scale and shift. Without a window all of it is drawn.
+View makeView(const Camera& camera, int width, int height, const std::optional<Window>& window = {});
 
 // Instances without triangles are left out; the order, and so the ids, stay.
 std::vector<Draw> makeDraws(const DrawList& list, const Camera& camera);

@@ -46,6 +46,11 @@ TEST_CASE("cli: what the command line cannot mean ends with 2 and says why") {
   w.failing(2, {"--digest", "--sise", "8x8"}, "--sise");
   w.failing(2, {"--digest", "more.glb"}, "more.glb");
   w.failing(2, {"--digest", "--size", "0x4"}, "WxH");
+  for (const char* crop : {"1,2", "1,2,3", "1,2,3,4", "-1,0,4x4", "0,0,0x4", "0,0,4x4x4", "0 ,0,4x4", ""})
+    w.failing(2, {"--digest", "--crop", crop}, "X,Y,WxH");
+  w.failing(2, {"--digest", "--size", "60x50", "--crop", "40,0,21x9"}, "crop 40,0,21x9 does not lie in the image of 60x50");
+  w.failing(2, {"--digest", "--border", "-1"}, "0...8192");
+  w.failing(2, {"--digest", "--size", "16383x9", "--border", "1"}, "a border of 1 pixels");
   w.failing(2, {"--digest", "--samples", "65"}, "1...64");
   w.failing(2, {"--digest", "--samples", "8.5"}, "1...64");
   w.failing(2, {"--digest", "--steps", "0"}, "1...4");
@@ -121,6 +126,7 @@ TEST_CASE("cli: an image in which nothing is seen is refused, or accepted with a
   const Finished f = w.failing(3, away, "nothing is visible from this camera");
   REQUIRE(f.err.find("0,0,0 to 2,2,2") != std::string::npos);
   REQUIRE(f.err.find("--allow-empty") != std::string::npos);
+  w.failing(3, {"--eye", "1,1,9", "--crop", "0,0,4x4", "-o", w / "a.png"}, "nothing is visible in this crop");
   Words words = {"render", w.scene, "--size", "32x32", "--allow-empty"};
   words.insert(words.end(), away.begin(), away.end());
   const Finished accepted = runProgram(words);

@@ -2,8 +2,10 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <map>
 #include <sstream>
 
@@ -149,6 +151,45 @@ TEST_CASE("cli: threads, instruction set, tile size, skipping and the reference 
     REQUIRE(w.digests({"--aov", "all", "--target", raster::targetName(target)}) == expected);
   REQUIRE(w.digests({"--aov", "all", "--no-skip"}) == expected);
   REQUIRE(w.digests({"--aov", "all", "--reference"}) == expected);
+}
+
+TEST_CASE("cli: crops of a frame with a border, put together, are the file of the whole") {
+  const Workplace w;
+  const Words eye = {"--eye", "0.9,0.6,1.7", "--target", "1,0.8,0", "--radius", "0.6"};  // close up: much is off screen
+  Words common = {"--aov", "transfer", "--border", "9", "--allow-empty"};
+  common.insert(common.end(), eye.begin(), eye.end());
+  const auto render = [&](Words more) {
+    more.insert(more.end(), common.begin(), common.end());
+    REQUIRE(w.render(more).code == 0);
+  };
+  render({"-o", w / "whole.npy"});
+  Words borders = eye;
+  borders.insert(borders.end(), {"--border", "9"});
+  REQUIRE(w.digests(borders).at("color") != w.digests(eye).at("color"));
+  const engine::Image whole = imageAt(w / "whole.npy");
+  engine::Image stitched = whole;
+  std::fill(stitched.bytes.begin(), stitched.bytes.end(), uint8_t(0));
+  for (const auto& [x, y, width, height] : {std::array{0, 0, 19, 23}, {19, 0, 29, 23}, {0, 23, 19, 17}, {19, 23, 29, 17}}) {
+    const std::string crop = std::to_string(x) + "," + std::to_string(y) + "," + std::to_string(width) + "x" + std::to_string(height);
+    render({"-o", w / "part.npy", "-o", w / "part.exr", "--crop", crop});
+    const engine::Image part = imageAt(w / "part.npy");
+    REQUIRE((part.width == width && part.height == height));
+    REQUIRE(imageAt(w / "part.exr").bytes == part.bytes);
+    for (int row = 0; row < height; ++row)
+      std::memcpy(stitched.row<float>(y + row) + x * 3, part.row<float>(row), size_t(width) * 12);
+    // Attributes of an EXR: name, type, size in bytes, value; a box is xMin, yMin, xMax, yMax.
+    const auto box = [exr = contentOf(w / "part.exr")](const std::string& name) {
+      const std::string start = name + '\0' + "box2i" + '\0';
+      std::array<int32_t, 5> v{};
+      const size_t at = exr.find(start);
+      REQUIRE(at != exr.npos);
+      std::memcpy(v.data(), exr.data() + at + start.size(), sizeof v);
+      return v;
+    };
+    REQUIRE(box("dataWindow") == std::array<int32_t, 5>{16, x, y, x + width - 1, y + height - 1});
+    REQUIRE(box("displayWindow") == std::array<int32_t, 5>{16, 0, 0, 47, 39});
+  }
+  REQUIRE(stitched.bytes == whole.bytes);
 }
 
 TEST_CASE("cli: every option of the ambient transfer and of the light changes the colour") {

@@ -161,7 +161,7 @@ TEST_CASE("occlusion: no vertex in a sphere is seen outside of its bound") {
       if (v.code[0] & kNeedsClip) continue;
       INFO("case " << k << " vertex " << i);
       REQUIRE(v.key[0] <= bound.nearestKey);
-      const int px = (v.xSub[0] + view.xHalfSub) >> kSubBits, py = (v.ySub[0] + view.yHalfSub) >> kSubBits;
+      const int px = (v.xSub[0] - view.xFirstSub) >> kSubBits, py = (v.ySub[0] - view.yFirstSub) >> kSubBits;
       if (px < 0 || py < 0 || px >= 640 || py >= 480) continue;
       REQUIRE((px >= bound.x0 && px <= bound.x1 && py >= bound.y0 && py <= bound.y1));
     }
