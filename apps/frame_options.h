@@ -25,6 +25,7 @@ struct ResolvedFrame {
 // before addTo(). The object must outlive the parsing.
 struct FrameOptions {
   int width = 800, height = 600;
+  int supersample = 1;
   int scene = -1;  // of the file; -1: its default
   engine::CameraRequest camera;
   glm::vec3 background{0}, ambientLight{1};  // linear

@@ -6,9 +6,11 @@
 #include <stdexcept>
 #include <utility>
 
+#include "obscura/engine/downsample_frame.h"
 #include "obscura/post/transfer_samples.h"
 #include "obscura/raster/float_environment.h"
 #include "obscura/raster/parallel.h"
+#include "obscura/raster/view.h"
 
 namespace obscura::engine {
 namespace {
@@ -32,7 +34,7 @@ Needs needsOf(const Scene& scene, const FrameSettings& s) {
   n.obscurance = wants(Aov::Obscurance) || (n.color && s.ambient == post::Occlusion::Obscurance);
   n.w = wants(Aov::Transfer) || (n.color && s.ambient == post::Occlusion::Transfer);
   n.sums = n.obscurance || n.w;
-  n.planes.depth = wants(Aov::Depth) || n.sums || n.color;
+  n.planes.depth = wants(Aov::Depth) || n.sums || n.color || s.supersample > 1;  // the nearest sub-pixel
   n.planes.normal = wants(Aov::Normal) || n.sums;
   n.planes.albedo = wants(Aov::Albedo) || n.w || n.color;
   n.planes.emissive = wants(Aov::Emissive) || (n.color && emits(scene));
@@ -45,6 +47,10 @@ Needs needsOf(const Scene& scene, const FrameSettings& s) {
 
 const char* wrongSetting(const FrameSettings& s) {
   const post::AmbientSettings& t = s.transfer;
+  if (s.supersample != 1 && s.supersample != 2 && s.supersample != 4) return "supersample must be 1, 2 or 4";
+  if (s.supersample > 1 && (std::min(s.width, s.height) < 1 ||
+                            std::max(s.width, s.height) > raster::kMaxImageSize / s.supersample))
+    return "width and height times supersample must be 1 to 16384: choose another size or less supersampling";
   if (t.samples < 1 || t.samples > 64) return "samples must be 1 to 64";
   if (t.steps < 1 || t.steps > 4) return "steps must be 1 to 4";
   if (!(t.radius > 0 && t.radius < 1e30f)) return "the radius must be positive and finite";
@@ -78,6 +84,7 @@ struct Renderer::State {
   std::vector<raster::Instance> instances;
   std::vector<raster::TextureView> textures;
   post::TransferSums sums;
+  Frame subpixels;  // of a supersampled frame; empty after any other
 
   State(const raster::Settings& s, bool ref)
       : settings(s), reference(ref), target(raster::chooseTarget(s.target)), rasterizer(s), parallel(ref ? 1 : s.threads) {}
@@ -115,19 +122,21 @@ Result<Done> Renderer::render(const Scene& scene, const FrameSettings& settings,
   const raster::FloatEnvironment environment;
   State& s = *state_;
   const Needs needs = needsOf(scene, settings);
-  const int w = settings.width, h = settings.height;
+  const int supersample = settings.supersample, w = settings.width * supersample, h = settings.height * supersample;
+  if (supersample == 1) s.subpixels = {};
+  Frame& full = supersample == 1 ? frame : s.subpixels;
   frame.timings = {};
   Stopwatch total, watch;
 
   const raster::DrawList list = s.drawList(scene);
-  if (s.reference) raster::renderReference(list, settings.camera, w, h, needs.planes, frame.g);
-  else s.rasterizer.render(list, settings.camera, w, h, needs.planes, frame.g);
+  if (s.reference) raster::renderReference(list, settings.camera, w, h, needs.planes, full.g);
+  else s.rasterizer.render(list, settings.camera, w, h, needs.planes, full.g);
   frame.statistics = s.rasterizer.statistics();
   frame.timings.gbuffer = watch.lap();
 
-  frame.width = w;
-  frame.height = h;
-  const post::TransferInput in{&frame.g, post::makeProjector(settings.camera, w, h), settings.transfer,
+  frame.width = settings.width;
+  frame.height = settings.height;
+  const post::TransferInput in{&full.g, post::makeProjector(settings.camera, w, h), settings.transfer,
                                post::transferSamples(settings.transfer)};
   if (needs.sums) {
     s.sums = post::makeTransferSums(in, std::move(s.sums));
@@ -136,24 +145,31 @@ Result<Done> Renderer::render(const Scene& scene, const FrameSettings& settings,
     });
     frame.timings.transfer = watch.lap();
 
-    frame.transfer = post::makeTransfer(w, h, needs.obscurance, needs.w, std::move(frame.transfer));
+    full.transfer = post::makeTransfer(w, h, needs.obscurance, needs.w, std::move(full.transfer));
     s.forRows(h, [&](int y0, int y1) {
-      s.reference ? post::depthFilterRef(in, s.sums, y0, y1, frame.transfer)
-                  : post::depthFilter(in, s.sums, y0, y1, frame.transfer, s.target);
+      s.reference ? post::depthFilterRef(in, s.sums, y0, y1, full.transfer)
+                  : post::depthFilter(in, s.sums, y0, y1, full.transfer, s.target);
     });
     frame.timings.filter = watch.lap();
   }
+  // The colours of sub-pixels take the memory of sums that nobody reads any more.
+  if (supersample > 1) std::swap(full.color.rgb, s.sums.denominator);
   if (needs.color) {
-    frame.color = post::makeLinearColor(w, h, std::move(frame.color));
-    const post::LightInput li{&frame.g, &frame.transfer, settings.ambient, settings.ambientLight, settings.background};
+    full.color = post::makeLinearColor(w, h, std::move(full.color));
+    const post::LightInput li{&full.g, &full.transfer, settings.ambient, settings.ambientLight, settings.background};
     s.forRows(h, [&](int y0, int y1) {
-      s.reference ? post::lightRef(li, y0, y1, frame.color) : post::light(li, y0, y1, frame.color, s.target);
+      s.reference ? post::lightRef(li, y0, y1, full.color) : post::light(li, y0, y1, full.color, s.target);
     });
     frame.timings.light = watch.lap();
   }
+  if (supersample > 1) {
+    downsampleFrame(full, settings, s.parallel, s.reference ? std::nullopt : std::optional(s.target), frame);
+    std::swap(full.color.rgb, s.sums.denominator);
+    frame.timings.downsample = watch.lap();
+  }
   if (settings.display) {
-    frame.display = post::makeDisplayImage(w, h, std::move(frame.display));
-    s.forRows(h, [&](int y0, int y1) {
+    frame.display = post::makeDisplayImage(frame.width, frame.height, std::move(frame.display));
+    s.forRows(frame.height, [&](int y0, int y1) {
       s.reference ? post::displayRef(frame.color, s.table, y0, y1, frame.display)
                   : post::display(frame.color, s.table, y0, y1, frame.display, s.target);
     });

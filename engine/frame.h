@@ -19,6 +19,7 @@ namespace obscura::engine {
 
 struct FrameSettings {
   int width = 800, height = 600;  // pixels, 1 ... raster::kMaxImageSize
+  int supersample = 1;            // 1, 2 or 4 sub-pixels a side of a pixel; times width or height up to that size, too
   raster::Camera camera;
   post::Occlusion ambient = post::Occlusion::Transfer;
   post::AmbientSettings transfer;
@@ -29,10 +30,11 @@ struct FrameSettings {
 };
 
 struct FrameTimings {  // milliseconds; 0 for what was not needed
-  double gbuffer = 0, transfer = 0, filter = 0, light = 0, display = 0, frame = 0;
+  double gbuffer = 0, transfer = 0, filter = 0, light = 0, downsample = 0, display = 0, frame = 0;
 };
 
-// Planes that no AOV needed are empty.
+// Planes that no AOV needed are empty. With supersampling only planes that are AOVs themselves are there; how they come
+// from the sub-pixels: downsample_frame.h. The statistics are those of the sub-pixels' image.
 struct Frame {
   int width = 0, height = 0;
   raster::GBuffer g;
