@@ -125,6 +125,11 @@ Result<Done> Renderer::render(const Scene& scene, const FrameSettings& settings,
   const int supersample = settings.supersample, w = settings.width * supersample, h = settings.height * supersample;
   if (supersample == 1) s.subpixels = {};
   Frame& full = supersample == 1 ? frame : s.subpixels;
+  // Planes of sub-pixels are large: two stages write over what nobody reads any more.
+  const auto hand = [&](raster::Plane<float> (&from)[3], raster::Plane<float> (&to)[3]) {
+    for (int c = 0; supersample > 1 && c < 3; ++c) to[c] = std::exchange(from[c], {});
+  };
+  const bool normalIsAov = std::find(settings.aovs.begin(), settings.aovs.end(), Aov::Normal) != settings.aovs.end();
   frame.timings = {};
   Stopwatch total, watch;
 
@@ -145,6 +150,7 @@ Result<Done> Renderer::render(const Scene& scene, const FrameSettings& settings,
     });
     frame.timings.transfer = watch.lap();
 
+    if (needs.w && !normalIsAov) hand(full.g.normal, full.transfer.w);
     full.transfer = post::makeTransfer(w, h, needs.obscurance, needs.w, std::move(full.transfer));
     s.forRows(h, [&](int y0, int y1) {
       s.reference ? post::depthFilterRef(in, s.sums, y0, y1, full.transfer)
@@ -152,9 +158,8 @@ Result<Done> Renderer::render(const Scene& scene, const FrameSettings& settings,
     });
     frame.timings.filter = watch.lap();
   }
-  // The colours of sub-pixels take the memory of sums that nobody reads any more.
-  if (supersample > 1) std::swap(full.color.rgb, s.sums.denominator);
   if (needs.color) {
+    hand(s.sums.denominator, full.color.rgb);
     full.color = post::makeLinearColor(w, h, std::move(full.color));
     const post::LightInput li{&full.g, &full.transfer, settings.ambient, settings.ambientLight, settings.background};
     s.forRows(h, [&](int y0, int y1) {
@@ -164,7 +169,8 @@ Result<Done> Renderer::render(const Scene& scene, const FrameSettings& settings,
   }
   if (supersample > 1) {
     downsampleFrame(full, settings, s.parallel, s.reference ? std::nullopt : std::optional(s.target), frame);
-    std::swap(full.color.rgb, s.sums.denominator);
+    if (needs.color) hand(full.color.rgb, s.sums.denominator);
+    if (needs.w && !normalIsAov) hand(full.transfer.w, full.g.normal);
     frame.timings.downsample = watch.lap();
   }
   if (settings.display) {

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <limits>
 #include <sstream>
+#include <tuple>
 
 #include <oneapi/tbb/global_control.h>
 
@@ -220,6 +221,31 @@ TEST_CASE("golden: a supersampled frame holds means and nearest sub-pixels of th
   }
   REQUIRE(renderer.render(demo(), plain, pixels).ok());  // into the frame that was supersampled
   CHECK(apps::digestLines(pixels, kAovs) == before);
+}
+
+TEST_CASE("golden: a renderer that has drawn other sizes, AOVs and ambient settings draws a supersampled frame alike") {
+  const std::vector<engine::Aov> color = {engine::Aov::Color}, more = {engine::Aov::Transfer, engine::Aov::Normal};
+  engine::Renderer used;
+  engine::Frame usedFrame;
+  for (const auto& [width, aovs, ambient, albedo] :
+       {std::tuple{40, color, post::Occlusion::Transfer, post::TransferAlbedo::Neighbour},
+        {40, color, post::Occlusion::Transfer, post::TransferAlbedo::Neighbour},
+        {24, more, post::Occlusion::Transfer, post::TransferAlbedo::Own},
+        {24, color, post::Occlusion::Transfer, post::TransferAlbedo::Own},
+        {32, color, post::Occlusion::None, post::TransferAlbedo::Neighbour},
+        {40, color, post::Occlusion::Obscurance, post::TransferAlbedo::Neighbour},
+        {40, more, post::Occlusion::Transfer, post::TransferAlbedo::Neighbour},
+        {40, color, post::Occlusion::Transfer, post::TransferAlbedo::Neighbour}}) {
+    engine::FrameSettings settings = frameOf(width, 20);
+    settings.supersample = 2;
+    settings.aovs = aovs;
+    settings.ambient = ambient;
+    settings.transfer.albedo = albedo;
+    engine::Frame fresh;
+    REQUIRE(used.render(demo(), settings, usedFrame).ok());
+    REQUIRE(engine::Renderer().render(demo(), settings, fresh).ok());
+    CHECK(apps::digestLines(usedFrame, aovs) == apps::digestLines(fresh, aovs));
+  }
 }
 
 TEST_CASE("golden: supersampling only fills planes that are AOVs, and only factors and sizes that exist are taken") {
