@@ -88,6 +88,15 @@ std::vector<Workload> makeWorkloads(int scale) {
   const glm::dvec3 offset(1e6 + 0.3, -1e6 + 0.7, 1e6);
   away.worldFromObject[3] = glm::dvec4(offset, 1);
   away.camera.viewFromWorld[3] = glm::dvec4(-offset, 1);
+  Workload& turned = add("turned", 400, 300, 0.1, 0);
+  addSoup(turned, 60000 * scale, 0.004, 1, 10);
+  turned.camera.viewFromWorld = raster::lookAt({3, 4, 5}, {0.3, 0.2, -1}, {0.1, 1, 0.2});
+  for (std::vector<glm::vec3>* vectors : {&turned.positions, &turned.normals})
+    for (glm::vec3& v : *vectors) {
+      const glm::dmat4& m = turned.camera.viewFromWorld;  // a rotation, whose inverse is its transpose, and a shift
+      const glm::dvec3 from = glm::dvec3(v) - (vectors == &turned.positions ? glm::dvec3(m[3]) : glm::dvec3(0));
+      for (int k = 0; k < 3; ++k) v[k] = float(dot(glm::dvec3(m[k]), from));
+    }
   Workload& flat = add("orthographic", 400, 300, 0.1, 0);
   addSoup(flat, 400 * scale, 0.15, 1, 10);
   flat.camera = raster::orthographic(6, 4.5, 0.1, 20);
@@ -183,10 +192,14 @@ class Measure {
   Real maxUlp_ = 0, sumUlp_ = 0, max_ = 0, sum_ = 0;
 };
 
-// The instance's rotation is the identity in every workload, so normals only turn with the camera, which does not turn.
+// The instance's rotation is the identity in every workload, so normals only turn with the camera.
 Point trueNormal(const Workload& w, uint32_t triangle, const Truth& t) {
-  Point n;
-  for (int i = 0; i < 3; ++i) n = n + point(w.normals[w.indices[size_t(triangle) * 3 + size_t(i)]]) * t.weight[i];
+  const glm::dmat4& m = w.camera.viewFromWorld;
+  Point world, n;
+  for (int i = 0; i < 3; ++i) world = world + point(w.normals[w.indices[size_t(triangle) * 3 + size_t(i)]]) * t.weight[i];
+  n.x = m[0].x * world.x + m[1].x * world.y + m[2].x * world.z;
+  n.y = m[0].y * world.x + m[1].y * world.y + m[2].y * world.z;
+  n.z = m[0].z * world.x + m[1].z * world.y + m[2].z * world.z;
   return n * (1 / length(n));
 }
 

@@ -22,7 +22,8 @@ struct Column {
 constexpr Column kColumns[] = {
     {"gbuffer_ms", &engine::FrameTimings::gbuffer}, {"transfer_ms", &engine::FrameTimings::transfer},
     {"filter_ms", &engine::FrameTimings::filter},   {"light_ms", &engine::FrameTimings::light},
-    {"display_ms", &engine::FrameTimings::display}, {"frame_ms", &engine::FrameTimings::frame},
+    {"downsample_ms", &engine::FrameTimings::downsample}, {"display_ms", &engine::FrameTimings::display},
+    {"frame_ms", &engine::FrameTimings::frame},
 };
 
 int fail(const engine::Error& error) {
@@ -81,11 +82,12 @@ int FrameBenchmark::run() {
     out["target"] = raster::targetName(raster::chooseTarget(resolved->raster.target));
     out["threads"] = resolved->raster.threads;
     out["size"] = {frame.width, frame.height};
+    out["supersample"] = resolved->frame.supersample;
     out["samples"] = resolved->frame.transfer.samples;
     out["triangles"] = s.triangles;
     for (size_t c = 0; c < std::size(kColumns); ++c) out[kColumns[c].name] = quantile(times[c], 0.5);
-    out["frame_ms_p10"] = quantile(times[5], 0.1);
-    out["frame_ms_p90"] = quantile(times[5], 0.9);
+    out["frame_ms_p10"] = quantile(times[std::size(kColumns) - 1], 0.1);
+    out["frame_ms_p90"] = quantile(times[std::size(kColumns) - 1], 0.9);
     out["digest"] = digest;
     std::printf("%s\n", out.dump().c_str());
     return 0;
@@ -93,9 +95,9 @@ int FrameBenchmark::run() {
   std::printf("%s, %dx%d, %llu triangles, %d samples, %s, %d frames\n", scene.c_str(), frame.width, frame.height,
               static_cast<unsigned long long>(s.triangles), resolved->frame.transfer.samples,
               raster::targetName(raster::chooseTarget(resolved->raster.target)), frames);
-  std::printf("%-12s %9s %9s %9s\n", "stage", "median", "p10", "p90");
+  std::printf("%-13s %9s %9s %9s\n", "stage", "median", "p10", "p90");
   for (size_t c = 0; c < std::size(kColumns); ++c)
-    std::printf("%-12s %9.3f %9.3f %9.3f\n", kColumns[c].name, quantile(times[c], 0.5), quantile(times[c], 0.1), quantile(times[c], 0.9));
+    std::printf("%-13s %9.3f %9.3f %9.3f\n", kColumns[c].name, quantile(times[c], 0.5), quantile(times[c], 0.1), quantile(times[c], 0.9));
   std::printf("digest %s\n", digest.c_str());
   return 0;
 }

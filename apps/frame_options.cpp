@@ -213,6 +213,10 @@ void addView(CLI::App& app, FrameOptions& o) {
              "pixels around the image that are not in it but occlude what is [" + std::to_string(o.border) + "]")
       ->type_name("PIXELS")
       ->group("View");
+  addChoice(app, "--supersample", {{"1", 1}, {"2", 2}, {"4", 4}}, o.supersample,
+            "antialiasing: sub-pixels a side of a pixel. color, albedo, emissive, obscurance and transfer are their "
+            "means, in linear light; depth, normal, position and ids those of the nearest one")
+      ->group("View");
   app.add_option(
          "--camera", o.camera.name,
          "camera of the file, by its name, its node's name or its index [the first; without one: a view of everything]")
@@ -293,6 +297,15 @@ void addExecution(CLI::App& app, FrameOptions& o) {
 }  // namespace
 
 void FrameOptions::addTo(CLI::App& app) {
+  app.parse_complete_callback([this] {
+    if (std::max(width, height) <= raster::kMaxImageSize / supersample) return;
+    const auto size = [](int w, int h) { return std::to_string(w) + "x" + std::to_string(h); };
+    throw CLI::ValidationError("--supersample", size(width, height) + " pixels times " + std::to_string(supersample) +
+                                                    " are " + size(width * supersample, height * supersample) +
+                                                    " sub-pixels; there can be " +
+                                                    std::to_string(raster::kMaxImageSize) +
+                                                    " a side: choose a smaller --size or --supersample");
+  });
   addView(app, *this);
   addAmbient(app, *this);
   addExecution(app, *this);
@@ -307,6 +320,7 @@ engine::Result<ResolvedFrame> FrameOptions::resolve(const engine::Scene& in) con
   out.frame.height = height;
   out.frame.border = border;
   out.frame.crop = crop;
+  out.frame.supersample = supersample;
   out.frame.camera = *chosen;
   out.frame.ambient = ambient;
   out.frame.ambientLight = ambientLight;

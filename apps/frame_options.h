@@ -27,6 +27,7 @@ struct FrameOptions {
   int width = 800, height = 600;
   int border = 0;
   std::optional<raster::Window> crop;
+  int supersample = 1;
   int scene = -1;  // of the file; -1: its default
   engine::CameraRequest camera;
   glm::vec3 background{0}, ambientLight{1};  // linear

@@ -40,9 +40,9 @@ Entries timingsOf(const engine::FrameTimings& f, const RunTimings& r) {
     return std::string(text);
   };
   return {{"load_ms", ms(r.load)},     {"gbuffer_ms", ms(f.gbuffer)}, {"transfer_ms", ms(f.transfer)},
-          {"filter_ms", ms(f.filter)}, {"light_ms", ms(f.light)},     {"display_ms", ms(f.display)},
-          {"frame_ms", ms(f.frame)},   {"digest_ms", ms(r.digest)},   {"encode_ms", ms(r.encode)},
-          {"write_ms", ms(r.write)}};
+          {"filter_ms", ms(f.filter)}, {"light_ms", ms(f.light)},     {"downsample_ms", ms(f.downsample)},
+          {"display_ms", ms(f.display)}, {"frame_ms", ms(f.frame)},   {"digest_ms", ms(r.digest)},
+          {"encode_ms", ms(r.encode)}, {"write_ms", ms(r.write)}};
 }
 
 std::string jsonObject(const Entries& entries) {

@@ -7,9 +7,11 @@
 #include <utility>
 
 #include "obscura/engine/crop.h"
+#include "obscura/engine/downsample_frame.h"
 #include "obscura/post/transfer_samples.h"
 #include "obscura/raster/float_environment.h"
 #include "obscura/raster/parallel.h"
+#include "obscura/raster/view.h"
 
 namespace obscura::engine {
 namespace {
@@ -35,7 +37,7 @@ Needs needsOf(const Scene& scene, const FrameSettings& s) {
   n.obscurance = wants(Aov::Obscurance) || (n.color && s.ambient == post::Occlusion::Obscurance);
   n.w = wants(Aov::Transfer) || (n.color && s.ambient == post::Occlusion::Transfer);
   n.sums = n.obscurance || n.w;
-  n.planes.depth = wants(Aov::Depth) || n.sums || n.color;
+  n.planes.depth = wants(Aov::Depth) || n.sums || n.color || s.supersample > 1;  // the nearest sub-pixel
   n.planes.normal = wants(Aov::Normal) || n.sums;
   n.planes.albedo = wants(Aov::Albedo) || n.w || n.color;
   n.planes.emissive = wants(Aov::Emissive) || (n.color && emits(scene));
@@ -51,6 +53,10 @@ Needs needsOf(const Scene& scene, const FrameSettings& s) {
 
 const char* wrongSetting(const FrameSettings& s) {
   const post::AmbientSettings& t = s.transfer;
+  if (s.supersample != 1 && s.supersample != 2 && s.supersample != 4) return "supersample must be 1, 2 or 4";
+  if (s.supersample > 1 && (std::min(s.width, s.height) < 1 ||
+                            std::max(s.width, s.height) > raster::kMaxImageSize / s.supersample))
+    return "width and height times supersample must be 1 to 16384: choose another size or less supersampling";
   if (t.samples < 1 || t.samples > 64) return "samples must be 1 to 64";
   if (t.steps < 1 || t.steps > 4) return "steps must be 1 to 4";
   if (!(t.radius > 0 && t.radius < 1e30f)) return "the radius must be positive and finite";
@@ -85,8 +91,15 @@ struct Renderer::State {
   std::vector<raster::Instance> instances;
   std::vector<raster::TextureView> textures;
   post::TransferSums sums;
-  raster::GBuffer drawn;         // of a frame with border or crop, as are its O and W: more than is given
+  // Of a frame with border or crop more is drawn than is given: this window, and in it the part that is given.
+  raster::Window window, part;
+  raster::GBuffer drawn;
   post::Transfer drawnTransfer;
+  // Planes of sub-pixels are large: two stages write over what nobody reads any more, the transfer over the normals and
+  // light over the sums.
+  bool overNormals = false, overSums = false;
+  bool more() const { return window.width > part.width || window.height > part.height; }
+  Frame subpixels;  // of a supersampled frame; empty after any other
 
   State(const raster::Settings& s, bool ref)
       : settings(s), reference(ref), target(raster::chooseTarget(s.target)), rasterizer(s), parallel(ref ? 1 : s.threads) {}
@@ -95,6 +108,11 @@ struct Renderer::State {
   void rasterize(const raster::DrawList& list, const FrameSettings& s, const raster::PlaneSet& planes, const raster::Window& w,
                  raster::GBuffer& out);
   raster::Window windowToDraw(const raster::DrawList& list, const FrameSettings& s, const Needs& needs);
+
+  void drawGBuffer(const Scene& scene, const FrameSettings& s, const Needs& needs, Frame& out);
+  void drawTransfer(const FrameSettings& s, const Needs& needs, Frame& out);
+  void drawLight(const FrameSettings& s, Frame& out);
+  void drawDisplay(Frame& out);
 
   // Calls body(y0, y1) for bands of the rows first ... end - 1, in parallel.
   template <class Body>
@@ -140,67 +158,110 @@ raster::Window Renderer::State::windowToDraw(const raster::DrawList& list, const
   return transferWindow(s, nearestDepth(g.depth));
 }
 
+void Renderer::State::drawGBuffer(const Scene& scene, const FrameSettings& s, const Needs& needs, Frame& out) {
+  const raster::DrawList list = drawList(scene);
+  const raster::Window output = outputWindow(s);
+  window = windowToDraw(list, s, needs);
+  part = {output.x - window.x, output.y - window.y, output.width, output.height};
+  rasterize(list, s, needs.planes, window, more() ? drawn : out.g);
+  out.statistics = rasterizer.statistics();
+  out.width = output.width, out.height = output.height;
+  out.x = output.x, out.y = output.y;
+  out.imageWidth = s.width, out.imageHeight = s.height;
+}
+
+// O and W of the part that is given, and the G-buffer cut down to it.
+void Renderer::State::drawTransfer(const FrameSettings& s, const Needs& needs, Frame& out) {
+  Stopwatch watch;
+  raster::GBuffer& g = more() ? drawn : out.g;
+  if (needs.sums) {
+    post::TransferInput in{&g, post::makeProjector(s.camera, s.width, s.height, window), s.transfer, post::transferSamples(s.transfer)};
+    if (!needs.w) in.settings.albedo = post::TransferAlbedo::Own;  // O needs no neighbour's albedo, and there is none
+    sums = post::makeTransferSums(in, std::move(sums));
+    const raster::Window filtered = filteredWindow(s);
+    forRows(filtered.y - window.y, filtered.y + filtered.height - window.y, [&](int y0, int y1) {
+      reference ? post::ambientTransferRef(in, y0, y1, sums) : post::ambientTransfer(in, y0, y1, sums, target);
+    });
+    out.timings.transfer = watch.lap();
+
+    post::Transfer& transfer = more() ? drawnTransfer : out.transfer;
+    for (int c = 0; overNormals && c < 3; ++c) transfer.w[c] = std::exchange(g.normal[c], {});
+    transfer = post::makeTransfer(g.width, g.height, needs.obscurance, needs.w, std::move(transfer));
+    forRows(part.y, part.y + part.height, [&](int y0, int y1) {
+      reference ? post::depthFilterRef(in, sums, y0, y1, transfer) : post::depthFilter(in, sums, y0, y1, transfer, target);
+    });
+    if (more()) cutOut(transfer, part, out.transfer);
+  }
+  if (more()) cutOut(g, part, out.g);
+  out.timings.filter = watch.lap();
+}
+
+void Renderer::State::drawLight(const FrameSettings& s, Frame& out) {
+  for (int c = 0; overSums && c < 3; ++c) out.color.rgb[c] = std::exchange(sums.denominator[c], {});
+  out.color = post::makeLinearColor(out.width, out.height, std::move(out.color));
+  const post::LightInput in{&out.g, &out.transfer, s.ambient, s.ambientLight, s.background};
+  forRows(0, out.height, [&](int y0, int y1) {
+    reference ? post::lightRef(in, y0, y1, out.color) : post::light(in, y0, y1, out.color, target);
+  });
+}
+
+void Renderer::State::drawDisplay(Frame& out) {
+  out.display = post::makeDisplayImage(out.width, out.height, std::move(out.display));
+  forRows(0, out.height, [&](int y0, int y1) {
+    reference ? post::displayRef(out.color, table, y0, y1, out.display) : post::display(out.color, table, y0, y1, out.display, target);
+  });
+}
+
+// The same frame, of sub-pixels.
+FrameSettings subpixels(FrameSettings s) {
+  s.width *= s.supersample, s.height *= s.supersample, s.border *= s.supersample;
+  if (s.crop) s.crop = raster::Window{s.crop->x * s.supersample, s.crop->y * s.supersample, s.crop->width * s.supersample, s.crop->height * s.supersample};
+  return s;
+}
+
 Result<Done> Renderer::render(const Scene& scene, const FrameSettings& settings, Frame& frame) try {
   if (const char* wrong = wrongSetting(settings)) return Error{ErrorCode::Usage, wrong, "", ""};
   if (const std::string wrong = wrongCrop(settings); !wrong.empty()) return Error{ErrorCode::Usage, wrong, "", ""};
+  const FrameSettings full = subpixels(settings);
+  if (const std::string wrong = wrongCrop(full); !wrong.empty()) return Error{ErrorCode::Usage, "of sub-pixels: " + wrong, "", ""};
   const raster::FloatEnvironment environment;
   State& s = *state_;
+  const bool supersampled = settings.supersample > 1;
+  if (!supersampled) s.subpixels = {};
+  Frame& drawn = supersampled ? s.subpixels : frame;
   const Needs needs = needsOf(scene, settings);
-  const raster::Window output = outputWindow(settings);
-  const int w = output.width, h = output.height;
-  frame.timings = {};
+  FrameTimings timings;
   Stopwatch total, watch;
 
-  const raster::DrawList list = s.drawList(scene);
-  const raster::Window drawn = s.windowToDraw(list, settings, needs);
-  const raster::Window part{output.x - drawn.x, output.y - drawn.y, w, h};  // the output in what is drawn
-  const bool more = drawn.width > w || drawn.height > h;
-  raster::GBuffer& g = more ? s.drawn : frame.g;
-  s.rasterize(list, settings, needs.planes, drawn, g);
-  frame.statistics = s.rasterizer.statistics();
-  frame.timings.gbuffer = watch.lap();
-
-  frame.width = w;
-  frame.height = h;
-  frame.x = output.x, frame.y = output.y;
-  frame.imageWidth = settings.width, frame.imageHeight = settings.height;
-  post::TransferInput in{&g, post::makeProjector(settings.camera, settings.width, settings.height, drawn),
-                         settings.transfer, post::transferSamples(settings.transfer)};
-  if (!needs.w) in.settings.albedo = post::TransferAlbedo::Own;  // O needs no neighbour's albedo, and there is none
-  if (needs.sums) {
-    s.sums = post::makeTransferSums(in, std::move(s.sums));
-    const raster::Window filtered = filteredWindow(settings);
-    s.forRows(filtered.y - drawn.y, filtered.y + filtered.height - drawn.y, [&](int y0, int y1) {
-      s.reference ? post::ambientTransferRef(in, y0, y1, s.sums) : post::ambientTransfer(in, y0, y1, s.sums, s.target);
-    });
-    frame.timings.transfer = watch.lap();
-
-    post::Transfer& transfer = more ? s.drawnTransfer : frame.transfer;
-    transfer = post::makeTransfer(g.width, g.height, needs.obscurance, needs.w, std::move(transfer));
-    s.forRows(part.y, part.y + h, [&](int y0, int y1) {
-      s.reference ? post::depthFilterRef(in, s.sums, y0, y1, transfer) : post::depthFilter(in, s.sums, y0, y1, transfer, s.target);
-    });
-    if (more) cutOut(transfer, part, frame.transfer);
-    frame.timings.filter = watch.lap();
-  }
-  if (more) cutOut(g, part, frame.g);
+  const bool normalIsAov = std::find(settings.aovs.begin(), settings.aovs.end(), Aov::Normal) != settings.aovs.end();
+  s.overNormals = supersampled && needs.w && !normalIsAov;
+  s.overSums = supersampled;
+  drawn.timings = {};
+  s.drawGBuffer(scene, full, needs, drawn);
+  timings.gbuffer = watch.lap();
+  s.drawTransfer(full, needs, drawn);
+  timings.transfer = drawn.timings.transfer;
+  timings.filter = drawn.timings.filter;
+  watch.lap();
   if (needs.color) {
-    frame.color = post::makeLinearColor(w, h, std::move(frame.color));
-    const post::LightInput li{&frame.g, &frame.transfer, settings.ambient, settings.ambientLight, settings.background};
-    s.forRows(0, h, [&](int y0, int y1) {
-      s.reference ? post::lightRef(li, y0, y1, frame.color) : post::light(li, y0, y1, frame.color, s.target);
-    });
-    frame.timings.light = watch.lap();
+    s.drawLight(full, drawn);
+    timings.light = watch.lap();
+  }
+  if (supersampled) {
+    downsampleFrame(drawn, settings, s.parallel, s.reference ? std::nullopt : std::optional(s.target), frame);
+    frame.statistics = drawn.statistics;
+    for (int c = 0; c < 3; ++c) {  // the next frame needs them where they were
+      if (s.overSums && needs.color) s.sums.denominator[c] = std::exchange(drawn.color.rgb[c], {});
+      if (s.overNormals) (s.more() ? s.drawn : drawn.g).normal[c] = std::exchange((s.more() ? s.drawnTransfer : drawn.transfer).w[c], {});
+    }
+    timings.downsample = watch.lap();
   }
   if (settings.display) {
-    frame.display = post::makeDisplayImage(w, h, std::move(frame.display));
-    s.forRows(0, h, [&](int y0, int y1) {
-      s.reference ? post::displayRef(frame.color, s.table, y0, y1, frame.display)
-                  : post::display(frame.color, s.table, y0, y1, frame.display, s.target);
-    });
-    frame.timings.display = watch.lap();
+    s.drawDisplay(frame);
+    timings.display = watch.lap();
   }
-  frame.timings.frame = total.lap();
+  timings.frame = total.lap();
+  frame.timings = timings;
   return Done{};
 } catch (const std::bad_alloc&) {
   return Error{ErrorCode::BadInput, "not enough memory for this frame", "", ""};

@@ -20,6 +20,7 @@ namespace obscura::engine {
 
 struct FrameSettings {
   int width = 800, height = 600;  // pixels, 1 ... raster::kMaxImageSize
+  int supersample = 1;            // 1, 2 or 4 sub-pixels a side of a pixel; times width or height up to that size, too
   raster::Camera camera;
   // Pixels more on every side that are rasterized and that the transfer and its filter see, but that are not given: what
   // lies just off screen occludes, too. 0 or more; image and borders are at most raster::kMaxImageSize a side.
@@ -37,10 +38,11 @@ struct FrameSettings {
 };
 
 struct FrameTimings {  // milliseconds; 0 for what was not needed
-  double gbuffer = 0, transfer = 0, filter = 0, light = 0, display = 0, frame = 0;
+  double gbuffer = 0, transfer = 0, filter = 0, light = 0, downsample = 0, display = 0, frame = 0;
 };
 
-// Planes that no AOV needed are empty.
+// Planes that no AOV needed are empty. With supersampling only planes that are AOVs themselves are there; how they come
+// from the sub-pixels: downsample_frame.h. The statistics are those of the sub-pixels' image.
 struct Frame {
   int width = 0, height = 0;            // of the planes: the crop's, or the image's
   int x = 0, y = 0;                     // where their pixel (0, 0) lies in the image

@@ -46,7 +46,7 @@ constexpr size_t kFirstClusters = 8192;
 // The nearest of the clusters found, one in so many, are drawn before the others are looked at again.
 constexpr size_t kFrontPart = 4;
 // The visibility of larger images (pixels) is not kept from round to round: 8 bytes a pixel.
-constexpr int64_t kMostKept = int64_t(1) << 25;
+constexpr int64_t kMostKept = int64_t(1) << 24;
 
 int bitsOfTile(int tile) {
   for (int bits = kMinTileBits; bits <= kMaxTileBits; ++bits)

@@ -51,6 +51,9 @@ TEST_CASE("cli: what the command line cannot mean ends with 2 and says why") {
   w.failing(2, {"--digest", "--size", "60x50", "--crop", "40,0,21x9"}, "crop 40,0,21x9 does not lie in the image of 60x50");
   w.failing(2, {"--digest", "--border", "-1"}, "0...8192");
   w.failing(2, {"--digest", "--size", "16383x9", "--border", "1"}, "a border of 1 pixels");
+  w.failing(2, {"--digest", "--supersample", "3"}, "1|2|4");
+  w.failing(2, {"--digest", "--supersample", "4", "--size", "64x4097"}, "256x16388 sub-pixels");
+  w.failing(2, {"--digest", "--size", "8193x8", "--supersample", "2"}, "16384 a side");
   w.failing(2, {"--digest", "--samples", "65"}, "1...64");
   w.failing(2, {"--digest", "--samples", "8.5"}, "1...64");
   w.failing(2, {"--digest", "--steps", "0"}, "1...4");

@@ -192,6 +192,23 @@ TEST_CASE("cli: crops of a frame with a border, put together, are the file of th
   REQUIRE(stitched.bytes == whole.bytes);
 }
 
+TEST_CASE("cli: --supersample changes the picture and not its size, and the reference makes the same") {
+  const Workplace w;
+  const auto plain = w.digests({"--aov", "all"}), one = w.digests({"--aov", "all", "--supersample", "1"});
+  REQUIRE(one == plain);
+  for (const char* s : {"2", "4"}) {
+    const auto found = w.digests({"--aov", "all", "--supersample", s});
+    REQUIRE(found.at("color").rfind("color 48x40x3 f32 ", 0) == 0);
+    REQUIRE(found.at("color") != plain.at("color"));
+    REQUIRE(w.digests({"--aov", "all", "--supersample", s, "--reference"}) == found);
+    REQUIRE(w.digests({"--aov", "all", "--supersample", s, "--threads", "3", "--tile", "16", "--no-skip"}) == found);
+    REQUIRE(w.digests({"--supersample", s}).at("color") == found.at("color"));
+  }
+  const Finished timed = w.render({"--timings", "--supersample", "4"});
+  REQUIRE(timed.out.find("\ndownsample_ms ") != std::string::npos);
+  REQUIRE(timed.out.find("\ndownsample_ms 0.000") == std::string::npos);
+}
+
 TEST_CASE("cli: every option of the ambient transfer and of the light changes the colour") {
   const Workplace w;
   const std::string standard = w.digests({}).at("color");

@@ -2,10 +2,13 @@
 // To accept a wanted change: scripts/bless, then look at the pictures and at `git diff`.
 #include <catch2/catch.hpp>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <sstream>
+#include <tuple>
 
 #include <oneapi/tbb/global_control.h>
 
@@ -121,6 +124,12 @@ TEST_CASE("golden: the demo scene in an orthographic view, obscurance only") {
   checkGolden("orthographic", s);
 }
 
+TEST_CASE("golden: the demo scene with 4 x 4 sub-pixels a pixel") {
+  engine::FrameSettings s = frameOf(79, 61);
+  s.supersample = 4;
+  checkGolden("supersampled", s);
+}
+
 TEST_CASE("golden: threads, targets, tile sizes, skipping and the scalar twins give the same digest of every plane") {
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, 8);
   const engine::FrameSettings settings = frameOf(100, 75);
@@ -140,4 +149,123 @@ TEST_CASE("golden: threads, targets, tile sizes, skipping and the scalar twins g
                                           << " --tile " << tile << " --threads " << count << (skip ? "" : " --no-skip"));
           REQUIRE(digests({count, target, tile, skip}, false) == expected);
         }
+}
+
+TEST_CASE("golden: supersampled frames, too, have one digest for threads, targets, tile sizes and the scalar twins") {
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, 8);
+  engine::FrameSettings settings = frameOf(37, 29);
+  for (int supersample : {2, 4}) {
+    settings.supersample = supersample;
+    auto digests = [&](const raster::Settings& raster, bool reference) {
+      engine::Renderer renderer(raster, reference);
+      engine::Frame frame;
+      REQUIRE(renderer.render(demo(), settings, frame).ok());
+      return apps::digestLines(frame, kAovs);
+    };
+    const std::vector<std::string> expected = digests({}, true);
+    for (raster::Target target : raster::supportedTargets())
+      for (int tile : {16, 64})
+        for (int count : {1, 3, 8}) {
+          INFO(raster::targetName(target) << ", tile " << tile << ", " << count << " threads, supersample " << supersample);
+          REQUIRE(digests({count, target, tile, count != 3}, false) == expected);
+        }
+  }
+}
+
+TEST_CASE("golden: a supersampled frame holds means and nearest sub-pixels of the frame so many times as large") {
+  engine::FrameSettings settings = frameOf(44, 33);
+  engine::Renderer renderer;
+  engine::Frame pixels, large, again;
+  const engine::FrameSettings plain = settings;
+  REQUIRE(renderer.render(demo(), plain, again).ok());
+  const auto before = apps::digestLines(again, kAovs);
+  for (int s : {2, 4}) {
+    settings.supersample = s;
+    REQUIRE(renderer.render(demo(), settings, pixels).ok());
+    engine::FrameSettings larger = plain;
+    larger.width *= s, larger.height *= s;
+    REQUIRE(engine::Renderer().render(demo(), larger, large).ok());
+    int wrong = 0, edges = 0, emptyInPart = 0;
+    for (int y = 0; y < 33; ++y)
+      for (int x = 0; x < 44; ++x) {
+        float nearest = std::numeric_limits<float>::infinity();
+        int nx = x * s, ny = y * s, empty = 0;
+        double color = 0, w = 0, albedo = 0, o = 0, emissive = 0;
+        for (int j = y * s; j < y * s + s; ++j)
+          for (int i = x * s; i < x * s + s; ++i) {
+            if (large.g.depth.at(i, j) < nearest) nearest = large.g.depth.at(i, j), nx = i, ny = j;
+            empty += large.g.triangle.at(i, j) == raster::kNoTriangle;
+            edges += large.g.triangle.at(i, j) != large.g.triangle.at(x * s, y * s);
+            color += double(large.color.rgb[1].at(i, j)), w += double(large.transfer.w[0].at(i, j));
+            albedo += double(large.g.albedo[2].at(i, j)), o += double(large.transfer.obscurance.at(i, j));
+            emissive += double(large.g.emissive[0].at(i, j));
+          }
+        emptyInPart += empty > 0 && empty < s * s;
+        const auto near = [&](double total, float found) { return std::fabs(total / (s * s) - double(found)) < 1e-6; };
+        wrong += !near(color, pixels.color.rgb[1].at(x, y)) || !near(w, pixels.transfer.w[0].at(x, y)) ||
+                 !near(albedo, pixels.g.albedo[2].at(x, y)) || !near(o, pixels.transfer.obscurance.at(x, y)) ||
+                 !near(emissive, pixels.g.emissive[0].at(x, y));
+        wrong += pixels.g.depth.at(x, y) != nearest;
+        wrong += pixels.g.triangle.at(x, y) != large.g.triangle.at(nx, ny);
+        wrong += pixels.g.instance.at(x, y) != large.g.instance.at(nx, ny);
+        wrong += pixels.g.material.at(x, y) != large.g.material.at(nx, ny);
+        for (int c = 0; c < 3; ++c) {
+          wrong += pixels.g.normal[c].at(x, y) != large.g.normal[c].at(nx, ny);
+          wrong += pixels.g.position[c].at(x, y) != large.g.position[c].at(nx, ny);
+          wrong += !(pixels.color.rgb[c].at(x, y) >= 0);  // NaN
+        }
+      }
+    CHECK(wrong == 0);
+    CHECK(edges > 100);
+    CHECK(emptyInPart > 20);
+  }
+  REQUIRE(renderer.render(demo(), plain, pixels).ok());  // into the frame that was supersampled
+  CHECK(apps::digestLines(pixels, kAovs) == before);
+}
+
+TEST_CASE("golden: a renderer that has drawn other sizes, AOVs and ambient settings draws a supersampled frame alike") {
+  const std::vector<engine::Aov> color = {engine::Aov::Color}, more = {engine::Aov::Transfer, engine::Aov::Normal};
+  engine::Renderer used;
+  engine::Frame usedFrame;
+  for (const auto& [width, aovs, ambient, albedo] :
+       {std::tuple{40, color, post::Occlusion::Transfer, post::TransferAlbedo::Neighbour},
+        {40, color, post::Occlusion::Transfer, post::TransferAlbedo::Neighbour},
+        {24, more, post::Occlusion::Transfer, post::TransferAlbedo::Own},
+        {24, color, post::Occlusion::Transfer, post::TransferAlbedo::Own},
+        {32, color, post::Occlusion::None, post::TransferAlbedo::Neighbour},
+        {40, color, post::Occlusion::Obscurance, post::TransferAlbedo::Neighbour},
+        {40, more, post::Occlusion::Transfer, post::TransferAlbedo::Neighbour},
+        {40, color, post::Occlusion::Transfer, post::TransferAlbedo::Neighbour}}) {
+    engine::FrameSettings settings = frameOf(width, 20);
+    settings.supersample = 2;
+    settings.aovs = aovs;
+    settings.ambient = ambient;
+    settings.transfer.albedo = albedo;
+    engine::Frame fresh;
+    REQUIRE(used.render(demo(), settings, usedFrame).ok());
+    REQUIRE(engine::Renderer().render(demo(), settings, fresh).ok());
+    CHECK(apps::digestLines(usedFrame, aovs) == apps::digestLines(fresh, aovs));
+  }
+}
+
+TEST_CASE("golden: supersampling only fills planes that are AOVs, and only factors and sizes that exist are taken") {
+  engine::FrameSettings settings = frameOf(20, 15);
+  engine::Renderer renderer;
+  engine::Frame frame;
+  REQUIRE(renderer.render(demo(), settings, frame).ok());
+  settings.supersample = 2;
+  settings.aovs = {engine::Aov::Instance};
+  settings.display = false;
+  REQUIRE(renderer.render(demo(), settings, frame).ok());
+  CHECK(!frame.g.instance.empty());
+  CHECK((frame.g.depth.empty() && frame.g.normal[0].empty() && frame.transfer.obscurance.empty()));
+  for (const auto& [width, s] : {std::pair{20, 3}, {20, 0}, {20, -2}, {20, 8}, {8193, 2}, {4097, 4}, {0, 2}, {-2147483647, 4}}) {
+    settings.width = width;
+    settings.supersample = s;
+    const auto done = renderer.render(demo(), settings, frame);
+    INFO(width << " times " << s);
+    REQUIRE(!done.ok());
+    CHECK(done.error().code == engine::ErrorCode::Usage);
+    CHECK(done.error().message.find("supersample") != std::string::npos);
+  }
 }

@@ -40,5 +40,5 @@ TEST_CASE("accuracy: depth, weights, textures and normals stay within their boun
       CHECK(r.rmsUlp > 0);
     }
   }
-  CHECK(rows == 44);
+  CHECK(rows == 49);
 }
