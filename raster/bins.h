@@ -58,20 +58,31 @@ class Bins {
  public:
   void reset(const TileGrid& grid) {
     grid_ = grid;
-    single_.resize(size_t(grid.count()));
-    small_.resize(size_t(grid.count()));
+    for (auto& lists : small_) {
+      lists.resize(size_t(grid.count()));
+      for (auto& list : lists) list.clear();
+    }
     large_.resize(size_t(grid.count()));
-    for (auto& list : single_) list.clear();
-    for (auto& list : small_) list.clear();
     for (auto& list : large_) list.clear();
     triangles_.clear();
   }
 
-  // A place for a small triangle, in a list of its first tile; to be filled, and then handed to spread().
-  SmallTriangle& add(int32_t block, int32_t blocks) {
+  // Small triangles by the blocks that they touch: one, two side by side, two on top of each other, two by two, all in this
+  // tile; then the others. Lists of their own, since the number of blocks, were it looked at triangle by triangle, is what a
+  // processor cannot foretell.
+  enum Kind { kOne, kTwoAcross, kTwoDown, kTwoByTwo, kAnySize, kKinds };
+  Kind kindOf(int32_t block, int32_t blocks) const {
+    const int last = (1 << (grid_.tileBits - kBlockBits)) - 1, columns = lowerHalf(blocks), rows = upperHalf(blocks);
+    const bool inTile = (lowerHalf(block) & last) + columns <= last && (upperHalf(block) & last) + rows <= last;
+    return inTile && (columns | rows) <= 1 ? Kind(columns + 2 * rows) : kAnySize;
+  }
+
+  // A place for a small triangle, in a list of its first tile; to be filled, and then
+  // handed to spread() if it is of any size.
+  SmallTriangle& add(Kind kind, int32_t block) {
     const int bits = grid_.tileBits - kBlockBits;
     const size_t tile = size_t(upperHalf(block) >> bits) * size_t(grid_.columns) + size_t(lowerHalf(block) >> bits);
-    return (blocks == 0 ? single_ : small_)[tile].append();
+    return small_[kind][tile].append();
   }
 
   // Copies it to the other tiles that it touches, if any.
@@ -82,7 +93,7 @@ class Bins {
     const SmallTriangle copy = t;
     for (int r = r0; r <= r1; ++r)
       for (int c = c0; c <= c1; ++c)
-        if (r != r0 || c != c0) small_[size_t(r) * size_t(grid_.columns) + size_t(c)].append() = copy;
+        if (r != r0 || c != c0) small_[kAnySize][size_t(r) * size_t(grid_.columns) + size_t(c)].append() = copy;
   }
 
   void add(const LargeTriangle& t) {
@@ -94,11 +105,10 @@ class Bins {
         if (mayCover(t, c, r)) large_[size_t(r) * size_t(grid_.columns) + size_t(c)].push_back(index);
   }
 
-  // Those that touch one block, and the others: two lists, as the first kind is the commonest and needs neither loops
-  // nor clipping to the tile.
-  Span<const SmallTriangle> single(int tile) const { return single_[size_t(tile)].view(); }
-  Span<const SmallTriangle> small(int tile) const { return small_[size_t(tile)].view(); }
-  bool empty(int tile) const { return single(tile).empty() && small(tile).empty() && large(tile).empty(); }
+  Span<const SmallTriangle> small(Kind kind, int tile) const { return small_[kind][size_t(tile)].view(); }
+  bool empty(int tile) const {
+    return large(tile).empty() && std::all_of(small_, small_ + kKinds, [&](const auto& lists) { return lists[size_t(tile)].view().empty(); });
+  }
   const std::vector<uint32_t>& large(int tile) const { return large_[size_t(tile)]; }
   const LargeTriangle& triangle(uint32_t index) const { return triangles_[index]; }
 
@@ -114,7 +124,7 @@ class Bins {
   }
 
   TileGrid grid_;
-  std::vector<RecordList> single_, small_;
+  std::vector<RecordList> small_[kKinds];
   std::vector<std::vector<uint32_t>> large_;  // into triangles_
   std::vector<LargeTriangle> triangles_;
 };

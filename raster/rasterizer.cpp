@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <functional>
+#include <limits>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -34,13 +35,16 @@ struct Candidate {
 struct Worker {
   Statistics statistics;
   std::vector<Candidate> candidates;
+  int64_t boxes = 0;  // pixels in their boxes
   TransformedVertices vertices;
   TileMemory tile, behind;
   Plane<float> limit;  // of a tile
 };
 
-// Frames of fewer clusters are drawn in one round: rounds have a cost of their own.
+// Frames of fewer clusters, or whose clusters' boxes add up to less than so many images, are drawn in one round: rounds
+// have a cost of their own, and little would be hidden.
 constexpr size_t kFewClusters = 512;
+constexpr int64_t kFewLayers = 4;
 // Clusters that the first rounds look at; later ones look at twice as many each.
 constexpr size_t kFirstClusters = 8192;
 // The nearest of the clusters found, one in so many, are drawn before the others are looked at again.
@@ -85,7 +89,7 @@ struct Rasterizer::State {
       : settings(s), target(chooseTarget(s.target)), tileBits(bitsOfTile(s.tile)), parallel(s.threads) {}
 
   void render(const DrawList& list, const View& view, const Camera& camera, const PlaneSet& planes, GBuffer& out);
-  void beginFrame(bool inRounds);
+  void startRounds();
   std::vector<const Draw*> visibleInstances(const View& view, const std::vector<Draw>& draws);
   std::vector<Candidate> findCandidates(const View& view, Span<const Draw* const> draws);
   void setupClusters(const View& view, Span<const Candidate> candidates, bool again, std::vector<Bins>& into);
@@ -111,10 +115,8 @@ Rasterizer& Rasterizer::operator=(Rasterizer&&) noexcept = default;
 const Statistics& Rasterizer::statistics() const { return state_->statistics; }
 const Timings& Rasterizer::timings() const { return state_->timings; }
 
-void Rasterizer::State::beginFrame(bool inRounds) {
-  rounds = inRounds;
-  drawn = false;
-  if (!rounds) return;
+void Rasterizer::State::startRounds() {
+  rounds = true;
   occlusion.reset(grid.width, grid.height);
   kept.reserve(size_t(grid.count()), grid.tileBits);
   started.assign(size_t(grid.count()), 0);
@@ -152,7 +154,10 @@ std::vector<Candidate> Rasterizer::State::findCandidates(const View& view, Span<
     count += draw->clusters->clusters.size();
   }
   statistics.clusters += count;
-  for (auto& w : workers) w->candidates.clear();
+  for (auto& w : workers) {
+    w->candidates.clear();
+    w->boxes = 0;
+  }
   constexpr size_t kClustersPerTask = 256;
   parallel.forRanges(count, kClustersPerTask, [&](size_t begin, size_t end, int index) {
     Worker& worker = *workers[size_t(index)];
@@ -174,6 +179,7 @@ std::vector<Candidate> Rasterizer::State::findCandidates(const View& view, Span<
           continue;
         }
         candidate.nearestKey = bound.nearestKey;
+        worker.boxes += int64_t(std::max(bound.x1 - bound.x0 + 1, 0)) * std::max(bound.y1 - bound.y0 + 1, 0);
       }
       worker.candidates.push_back(candidate);
     }
@@ -181,6 +187,18 @@ std::vector<Candidate> Rasterizer::State::findCandidates(const View& view, Span<
   std::vector<Candidate> all;
   for (auto& w : workers) all.insert(all.end(), w->candidates.begin(), w->candidates.end());
   return all;
+}
+
+// The nearest ones, and the others; both stay in the order of the memory that they read.
+std::pair<Span<const Candidate>, Span<const Candidate>> frontAndRest(std::vector<Candidate>& found) {
+  if (found.empty()) return {};
+  std::vector<float> keys;
+  for (const Candidate& c : found) keys.push_back(c.nearestKey);
+  const auto threshold = keys.begin() + std::ptrdiff_t(found.size() / kFrontPart);
+  std::nth_element(keys.begin(), threshold, keys.end(), std::greater<>());
+  const auto isNear = [&](const Candidate& c) { return c.nearestKey > *threshold; };
+  const size_t front = size_t(std::stable_partition(found.begin(), found.end(), isNear) - found.begin());
+  return {{found.data(), front}, {found.data() + front, found.size() - front}};
 }
 
 // again: more has been drawn since the candidates were found.
@@ -230,7 +248,7 @@ void Rasterizer::State::drawRound(const SurfaceContext& context) {
     for (size_t t = begin; t < end; ++t) {
       if (!anyOf(bins, int(t))) continue;
       TileBuffers tile = placeTile(grid, int(t), kept, t);
-      if (!std::exchange(started[t], 1)) clearTile(keep, tile);
+      if (!std::exchange(started[t], 1)) clearTile(keep, tile, target);
       rasterTile(context, int(t), bins, keep, tile, target);
       occlusion.update(tile, target);
     }
@@ -249,7 +267,7 @@ void Rasterizer::State::drawLayer(const SurfaceContext& context, const TileBuffe
     worker.limit.resize(1 << (2 * grid.tileBits), 1);
     tile.limit = worker.limit.row(0);
     limitTile(*context.view, first, covered, layer, separation, tile, target);
-    clearTile(Keep::KeyWithinLimit, tile);
+    clearTile(Keep::KeyWithinLimit, tile, target);
     rasterTile(context, index, from, Keep::KeyWithinLimit, tile, target);
   }
   storeTileDepth(*context.view, tile, more, out, target);
@@ -263,7 +281,7 @@ void Rasterizer::State::finishTiles(const SurfaceContext& context, const PlaneSe
     for (size_t t = begin; t < end; ++t) {
       TileBuffers tile = rounds ? placeTile(grid, int(t), kept, t) : placeTile(grid, int(t), worker.tile, 0);
       const bool holds = rounds && started[t], more = anyOf(bins, int(t)) || !settings.skip, covered = holds || more;
-      if (more && !holds) clearTile(keep, tile);
+      if (more && !holds) clearTile(keep, tile, target);
       if (more) rasterTile(context, int(t), bins, keep, tile, target);
       ++worker.statistics.tiles;
       worker.statistics.tilesEmpty += !covered;
@@ -312,37 +330,29 @@ void Rasterizer::State::render(const DrawList& list, const View& view, const Cam
   grid = TileGrid(view.width, view.height, tileBits);
   keep = planes.depthsAlone() ? Keep::Key : Keep::Visibility;
   const SurfaceContext context{&view, draws, list.textures, srgb.linear};
-  beginFrame(false);
+  rounds = drawn = false;
   if (planes.depthBack) setupAway(view, awayDraws(draws));
   for (Bins& b : bins) b.reset(grid);
-  const std::vector<const Draw*> visible = visibleInstances(view, draws);
-  size_t clusters = 0;
-  for (const Draw* draw : visible) clusters += draw->clusters->clusters.size();
-  // What lies behind the first layer must not be hidden by it.
-  beginFrame(settings.skip && clusters >= kFewClusters && int64_t(view.width) * view.height <= kMostKept && !planes.depth2 && !planes.depthBack);
-
   auto lap = [last = start](double& milliseconds) mutable {
     const auto now = std::chrono::steady_clock::now();
     milliseconds += std::chrono::duration<double, std::milli>(now - std::exchange(last, now)).count();
   };
-  size_t look = rounds ? kFirstClusters : clusters;
+
+  const std::vector<const Draw*> visible = visibleInstances(view, draws);
+  // What lies behind the first layer must not be hidden by it.
+  const int64_t pixels = int64_t(view.width) * view.height;
+  const bool mayHide = settings.skip && !planes.depth2 && !planes.depthBack && pixels <= kMostKept;
+  size_t look = mayHide ? kFirstClusters : std::numeric_limits<size_t>::max();
   for (size_t from = 0, to = 0; from < visible.size(); from = to, look *= 2) {
     for (size_t count = 0; to < visible.size() && (to == from || count + visible[to]->clusters->clusters.size() <= look); ++to)
       count += visible[to]->clusters->clusters.size();
     if (from > 0) drawRound(context);
     lap(timings.tilesMs);
     std::vector<Candidate> found = findCandidates(view, {visible.data() + from, to - from});
-    Span<const Candidate> front = found, rest;
-    if (rounds && !found.empty()) {
-      // By a threshold, so that both parts stay in the order of the memory that they read.
-      std::vector<float> keys;
-      for (const Candidate& c : found) keys.push_back(c.nearestKey);
-      const auto threshold = keys.begin() + std::ptrdiff_t(found.size() / kFrontPart);
-      std::nth_element(keys.begin(), threshold, keys.end(), std::greater<>());
-      const auto middle = std::stable_partition(found.begin(), found.end(), [&](const Candidate& c) { return c.nearestKey > *threshold; });
-      front = {found.data(), size_t(middle - found.begin())};
-      rest = {found.data() + front.size(), found.size() - front.size()};
-    }
+    int64_t boxes = 0;
+    for (const auto& w : workers) boxes += w->boxes;
+    if (mayHide && !rounds && (to < visible.size() || (found.size() >= kFewClusters && boxes >= kFewLayers * pixels))) startRounds();
+    const auto [front, rest] = rounds ? frontAndRest(found) : std::pair<Span<const Candidate>, Span<const Candidate>>{found, {}};
     setupClusters(view, front, false, bins);
     lap(timings.setupMs);
     if (rest.empty()) continue;

@@ -42,24 +42,50 @@ HWY_INLINE void store3(const V3& v, const At& at, Plane<float> planes[3]) {
   storeRows(d, v.z, at, planes[2]);
 }
 
-HWY_INLINE void storeDepth(const View& view, VF key, MF covered, VI lx, VI ly, const At& at, GBuffer& out) {
+// Rows of pixels from blocks of them, four at a time.
+HWY_INLINE void rowFromBlocks(const TileBuffers& tile, int row, float* keys, uint32_t* ids) {
+  const hn::CappedTag<float, kBlock> d;
+  const hn::RebindToUnsigned<decltype(d)> du;
+  for (int column = 0; column < tile.width; column += kBlock)
+    for (int i = 0; i < kBlock; i += int(hn::Lanes(d))) {
+      hn::StoreU(hn::LoadU(d, tile.key + tile.at(column, row) + i), d, keys + column + i);
+      hn::StoreU(hn::LoadU(du, tile.id + tile.at(column, row) + i), du, ids + column + i);
+    }
+}
+
+// Depth, position and triangle ids need nothing but the visibility: row by row, as memory likes it.
+HWY_INLINE void storeVisibility(const View& view, const TileBuffers& tile, GBuffer& out) {
   const DF d;
   const DI di;
-  const VF infinity = hn::Set(d, std::numeric_limits<float>::infinity()), zero = hn::Zero(d);
-  // 0 - key: a plain negation would give two kinds of zero.
-  const VF zView = view.perspective ? hn::Div(hn::Set(d, 1.0f), key) : hn::Sub(zero, key);
-  if (!out.depth.empty()) storeRows(d, hn::IfThenElse(covered, zView, infinity), at, out.depth);
-  if (out.position[0].empty()) return;
-  const VF xc = hn::ConvertTo(d, hn::Add(hn::Set(di, view.xCenterSub(at.x)), hn::ShiftLeft<kSubBits>(lx)));
-  const VF yc = hn::ConvertTo(d, hn::Add(hn::Set(di, view.yCenterSub(at.y)), hn::ShiftLeft<kSubBits>(ly)));
-  VF px = hn::Div(hn::Sub(xc, hn::Set(d, view.xShiftSub)), hn::Set(d, view.xScaleSub));
-  VF py = hn::Div(hn::Sub(yc, hn::Set(d, view.yShiftSub)), hn::Set(d, view.yScaleSub));
-  if (view.perspective) {
-    px = hn::Mul(px, zView);
-    py = hn::Mul(py, zView);
+  const DU du;
+  const VF infinity = hn::Set(d, std::numeric_limits<float>::infinity()), zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+  HWY_ALIGN float keys[1 << kMaxTileBits];
+  HWY_ALIGN uint32_t ids[1 << kMaxTileBits];
+  for (int row = 0; row < tile.height; ++row) {
+    const int y = tile.y + row;
+    rowFromBlocks(tile, row, keys, ids);
+    for (int column = 0; column < tile.width; column += int(hn::Lanes(d))) {
+      const int x = tile.x + column;
+      const VU id = hn::Load(du, ids + column);
+      const VF key = hn::Load(d, keys + column);
+      const MF covered = hn::RebindMask(d, hn::Ne(id, hn::Set(du, kNoTriangle)));
+      // 0 - key: a plain negation would give two kinds of zero.
+      const VF zView = view.perspective ? hn::Div(one, key) : hn::Sub(zero, key);
+      if (!out.triangle.empty()) hn::StoreU(id, du, out.triangle.row(y) + x);
+      if (!out.depth.empty()) hn::StoreU(hn::IfThenElse(covered, zView, infinity), d, out.depth.row(y) + x);
+      if (out.position[0].empty()) continue;
+      const VF xc = hn::ConvertTo(d, hn::Add(hn::Set(di, view.xCenterSub(x)), hn::ShiftLeft<kSubBits>(hn::Iota(di, 0))));
+      VF px = hn::Div(hn::Sub(xc, hn::Set(d, view.xShiftSub)), hn::Set(d, view.xScaleSub));
+      VF py = hn::Div(hn::Set(d, float(view.yCenterSub(y)) - view.yShiftSub), hn::Set(d, view.yScaleSub));
+      if (view.perspective) {
+        px = hn::Mul(px, zView);
+        py = hn::Mul(py, zView);
+      }
+      hn::StoreU(hn::IfThenElseZero(covered, px), d, out.position[0].row(y) + x);
+      hn::StoreU(hn::IfThenElseZero(covered, py), d, out.position[1].row(y) + x);
+      hn::StoreU(hn::IfThenElseZero(covered, hn::Sub(zero, zView)), d, out.position[2].row(y) + x);
+    }
   }
-  const V3 none{zero, zero, zero};
-  store3(select(covered, {px, py, hn::Sub(zero, zView)}, none), at, out.position);
 }
 
 HWY_INLINE void storeDraws(const VectorTriangles& t, const At& at, GBuffer& out) {
@@ -74,37 +100,41 @@ HWY_INLINE void storeDraws(const VectorTriangles& t, const At& at, GBuffer& out)
   if (!out.material.empty()) storeRows(d, material, at, out.material);
 }
 
-HWY_INLINE void resolveCell(const SurfaceContext& context, const TileBuffers& tile, const CellBlocks& blocks, const Wanted& wanted,
+// The lines of memory that a cell's planes will fill; cells jump from row to row, which no prefetcher follows.
+HWY_INLINE void fetchCell(const TileBuffers& tile, int x, int y, GBuffer& out) {
+  if (x >= tile.width) return;
+  const int rows = std::min(kCell, tile.height - y);
+  for (auto* planes : {out.normal, out.albedo, out.emissive})
+    for (int c = 0; c < 3 && !planes[0].empty(); ++c)
+      for (int row = 0; row < rows; ++row) __builtin_prefetch(planes[c].row(tile.y + y + row) + tile.x + x, 1);
+}
+
+// Attributes of the cell whose first pixel is (left, top) of the tile.
+HWY_INLINE void resolveCell(const SurfaceContext& context, const TileBuffers& tile, int left, int top, const Wanted& wanted,
                             CellTriangles& cell, GBuffer& out) {
   const DF d;
   const DI di;
   const DU du;
-  const bool triangles = wanted.surfaces() || wanted.draws;
-  if (triangles) {
-    findTriangles(context, tile, blocks, cell);
-    describeTriangles(context, wanted.surfaces(), wanted.normal, tile.x + blocks.x * kBlock, tile.y + blocks.y * kBlock, cell);
-  }
+  const CellBlocks blocks = blocksOf(tile, left, top);
+  findTriangles(context, tile, blocks, cell);
+  describeTriangles(context, wanted.surfaces(), wanted.normal, tile.x + left, tile.y + top, cell);
   int vector = 0, slot = 0;
   for (int row = 0; row < blocks.rows; ++row)
     for (int column = 0; column < blocks.columns; ++column)
       for (int first = 0; first < kBlock * kBlock; first += int(hn::Lanes(d))) {
-        const int element = firstOfBlock(tile, blocks.x + column, blocks.y + row) + first, line = first >> kBlockBits;
-        const VI lx = hn::And(hn::Iota(di, 0), hn::Set(di, kBlock - 1)), ly = hn::ShiftRight<kBlockBits>(hn::Iota(di, 0));
-        const int dx = column * kBlock + first % kBlock, dy = row * kBlock + line;  // from the cell's first pixel
-        const At at{tile.x + blocks.x * kBlock + dx, tile.y + blocks.y * kBlock + dy, tile.height - (blocks.y * kBlock + dy)};
-        const int count = triangles ? cell.slotEnd[vector] - slot : 0;
-        const VU id = hn::Load(du, tile.id + element);
+        const int dx = column * kBlock + first % kBlock, dy = row * kBlock + (first >> kBlockBits);  // from the cell's first pixel
+        const At at{tile.x + left + dx, tile.y + top + dy, tile.height - (top + dy)};
+        const int count = cell.slotEnd[vector] - slot;
+        const VU id = hn::Load(du, tile.id + firstOfBlock(tile, blocks.x + column, blocks.y + row) + first);
         const VectorTriangles t{cell, cell.slot + slot, count, cell.oneDraw ? std::min(count, 1) : count, id};
         ++vector;
         slot += count;
         if (at.rows <= 0) continue;
-        const MF covered = hn::RebindMask(d, hn::Ne(id, hn::Set(du, kNoTriangle)));
-        storeDepth(*context.view, hn::Load(d, tile.key + element), covered, lx, ly, at, out);
-        if (!out.triangle.empty()) storeRows(du, id, at, out.triangle);
         if (wanted.draws) storeDraws(t, at, out);
         if (!wanted.surfaces()) continue;
-        const Shaded s = shade(context, wanted, t, covered, hn::ConvertTo(d, hn::Add(lx, hn::Set(di, dx))),
-                               hn::ConvertTo(d, hn::Add(ly, hn::Set(di, dy))));
+        const VI lx = hn::And(hn::Iota(di, 0), hn::Set(di, kBlock - 1)), ly = hn::ShiftRight<kBlockBits>(hn::Iota(di, 0));
+        const Shaded s = shade(context, wanted, t, hn::RebindMask(d, hn::Ne(id, hn::Set(du, kNoTriangle))),
+                               hn::ConvertTo(d, hn::Add(lx, hn::Set(di, dx))), hn::ConvertTo(d, hn::Add(ly, hn::Set(di, dy))));
         store3(s.normal, at, out.normal);
         store3(s.albedo, at, out.albedo);
         store3(s.emissive, at, out.emissive);
@@ -112,10 +142,17 @@ HWY_INLINE void resolveCell(const SurfaceContext& context, const TileBuffers& ti
 }
 
 void ResolveTile(const SurfaceContext& context, const TileBuffers& tile, GBuffer& out) {
+  storeVisibility(*context.view, tile, out);
   const Wanted wanted(out);
+  if (!wanted.surfaces() && !wanted.draws) return;
   CellTriangles cell;
-  for (int y = 0; y < tile.height; y += kCell)
-    for (int x = 0; x < tile.width; x += kCell) resolveCell(context, tile, blocksOf(tile, x, y), wanted, cell, out);
+  for (int y = 0; y < tile.height; y += kCell) {
+    fetchCell(tile, 0, y, out);
+    for (int x = 0; x < tile.width; x += kCell) {
+      fetchCell(tile, x + kCell, y, out);
+      resolveCell(context, tile, x, y, wanted, cell, out);
+    }
+  }
 }
 
 }  // namespace HWY_NAMESPACE

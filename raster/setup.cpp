@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "obscura/raster/setup.cpp"
@@ -180,12 +182,18 @@ HWY_INLINE MI hiddenBoxes(const OcclusionMap& occlusion, const Box& box, VF near
   return hn::RebindMask(di, all);
 }
 
-// What is needed of up to a vector of surviving triangles to write their records.
+// Up to a vector of surviving triangles: field by field what their records are to hold, in the order of SmallTriangle, and
+// what the depth gradients are made of.
 struct Survivors {
-  HWY_ALIGN int32_t e[3][16], a[16], b[16], block[16], blocks[16], triangle[16];
+  enum Field { kE0, kE1, kE2, kA, kB, kBlock, kBlocks, kKey0, kXGradient, kYGradient, kXFromP0, kYFromP0, kKeyMin, kKeyMax, kId, kMasked, kFields };
+  HWY_ALIGN int32_t field[kFields][16];
   HWY_ALIGN int32_t dx1[16], dy1[16], dx2[16], dy2[16], area[16];
-  HWY_ALIGN float key0[16], key1[16], key2[16], keyMin[16], keyMax[16], xGradient[16], yGradient[16], xFromP0[16], yFromP0[16];
+  HWY_ALIGN float key0[16], key1[16], key2[16];
 };
+static_assert(sizeof(SmallTriangle) == Survivors::kFields * sizeof(int32_t) && offsetof(SmallTriangle, a) == Survivors::kA * 4 &&
+              offsetof(SmallTriangle, block) == Survivors::kBlock * 4 && offsetof(SmallTriangle, key0) == Survivors::kKey0 * 4 &&
+              offsetof(SmallTriangle, xFromP0) == Survivors::kXFromP0 * 4 && offsetof(SmallTriangle, keyMin) == Survivors::kKeyMin * 4 &&
+              offsetof(SmallTriangle, id) == Survivors::kId * 4 && offsetof(SmallTriangle, masked) == Survivors::kMasked * 4);
 
 // Depth gradients, in double: the products of a 24-bit key and a 15-bit extent are exact there.
 HWY_INLINE void depthGradients(Survivors& s, int count) {
@@ -200,8 +208,9 @@ HWY_INLINE void depthGradients(Survivors& s, int count) {
     const auto perArea = hn::Div(hn::Set(d, 1.0), integer(s.area));
     const auto gx = hn::Sub(hn::Mul(d1, integer(s.dy2)), hn::Mul(d2, integer(s.dy1)));
     const auto gy = hn::Sub(hn::Mul(d2, integer(s.dx1)), hn::Mul(d1, integer(s.dx2)));
-    hn::StoreU(hn::DemoteTo(df, hn::Mul(gx, perArea)), df, s.xGradient + i);
-    hn::StoreU(hn::DemoteTo(df, hn::Mul(gy, perArea)), df, s.yGradient + i);
+    auto store = [&](auto v, int32_t* p) HWY_ATTR { hn::StoreU(hn::BitCast(di, hn::DemoteTo(df, hn::Mul(v, perArea))), di, p + i); };
+    store(gx, s.field[Survivors::kXGradient]);
+    store(gy, s.field[Survivors::kYGradient]);
   }
 }
 
@@ -294,15 +303,25 @@ void SetupCluster(const View& view, const Draw& draw, const Cluster& cluster, co
     auto pair = [&](VI lower, VI upper) HWY_ATTR {
       return hn::Or(hn::And(lower, hn::Set(di, 0xFFFF)), hn::ShiftLeft<16>(upper));
     };
-    for (int k = 0; k < 3; ++k) hn::Store(edges.e[k], di, s.e[k]);
-    hn::Store(pair(edges.a[0], edges.a[1]), di, s.a);
-    hn::Store(pair(edges.b[0], edges.b[1]), di, s.b);
-    hn::Store(pair(bx, by), di, s.block);
-    hn::Store(pair(hn::Sub(hn::ShiftRight<kBlockBits>(box.x1), bx), hn::Sub(hn::ShiftRight<kBlockBits>(box.y1), by)), di, s.blocks);
+    auto put = [&](VI v, Survivors::Field f) HWY_ATTR { hn::Store(v, di, s.field[f]); };
+    auto putReal = [&](VF v, Survivors::Field f) HWY_ATTR { put(hn::BitCast(di, v), f); };
+    put(edges.e[0], Survivors::kE0);
+    put(edges.e[1], Survivors::kE1);
+    put(edges.e[2], Survivors::kE2);
+    put(pair(edges.a[0], edges.a[1]), Survivors::kA);
+    put(pair(edges.b[0], edges.b[1]), Survivors::kB);
+    put(pair(bx, by), Survivors::kBlock);
+    put(pair(hn::Sub(hn::ShiftRight<kBlockBits>(box.x1), bx), hn::Sub(hn::ShiftRight<kBlockBits>(box.y1), by)), Survivors::kBlocks);
     const VI cx = hn::Add(hn::ShiftLeft<kSubBits>(x), hn::Set(di, kSub / 2 + view.xFirstSub));
     const VI cy = hn::Add(hn::ShiftLeft<kSubBits>(y), hn::Set(di, kSub / 2 + view.yFirstSub));
-    hn::Store(hn::ConvertTo(d, hn::Sub(cx, c.x[0])), d, s.xFromP0);
-    hn::Store(hn::ConvertTo(d, hn::Sub(cy, c.y[0])), d, s.yFromP0);
+    putReal(hn::ConvertTo(d, hn::Sub(cx, c.x[0])), Survivors::kXFromP0);
+    putReal(hn::ConvertTo(d, hn::Sub(cy, c.y[0])), Survivors::kYFromP0);
+    putReal(key0, Survivors::kKey0);
+    putReal(hn::Min(hn::Min(key0, key1), key2), Survivors::kKeyMin);
+    putReal(nearest, Survivors::kKeyMax);
+    const VI number = hn::GatherIndex(di, reinterpret_cast<const int32_t*>(triangles), index);
+    put(hn::Add(number, hn::Set(di, int32_t(draw.firstTriangle))), Survivors::kId);
+    put(hn::Set(di, masked), Survivors::kMasked);
     hn::Store(hn::Sub(c.x[1], c.x[0]), di, s.dx1);
     hn::Store(hn::Sub(c.y[1], c.y[0]), di, s.dy1);
     hn::Store(hn::Sub(c.x[2], c.x[0]), di, s.dx2);
@@ -311,28 +330,14 @@ void SetupCluster(const View& view, const Draw& draw, const Cluster& cluster, co
     hn::Store(key0, d, s.key0);
     hn::Store(key1, d, s.key1);
     hn::Store(key2, d, s.key2);
-    hn::Store(hn::Min(hn::Min(key0, key1), key2), d, s.keyMin);
-    hn::Store(nearest, d, s.keyMax);
-    hn::Store(hn::GatherIndex(di, reinterpret_cast<const int32_t*>(triangles), index), di, s.triangle);
     depthGradients(s, count);
     for (; rest != 0; rest &= rest - 1) {
       const int k = int(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
-      SmallTriangle& t = bins.add(s.block[k], s.blocks[k]);
-      for (int n = 0; n < 3; ++n) t.e[n] = s.e[n][k];
-      t.a = s.a[k];
-      t.b = s.b[k];
-      t.block = s.block[k];
-      t.blocks = s.blocks[k];
-      t.key0 = s.key0[k];
-      t.xGradient = s.xGradient[k];
-      t.yGradient = s.yGradient[k];
-      t.xFromP0 = s.xFromP0[k];
-      t.yFromP0 = s.yFromP0[k];
-      t.keyMin = s.keyMin[k];
-      t.keyMax = s.keyMax[k];
-      t.id = draw.firstTriangle + uint32_t(s.triangle[k]);
-      t.masked = masked;
-      if (s.blocks[k] != 0) bins.spread(t);
+      const int32_t block = s.field[Survivors::kBlock][k], blocks = s.field[Survivors::kBlocks][k];
+      const Bins::Kind kind = bins.kindOf(block, blocks);
+      SmallTriangle& t = bins.add(kind, block);
+      for (int f = 0; f < Survivors::kFields; ++f) std::memcpy(reinterpret_cast<char*>(&t) + f * 4, &s.field[f][k], 4);
+      if (kind == Bins::kAnySize) bins.spread(t);
     }
   }
   statistics.hidden += hiddenHere;

@@ -74,7 +74,7 @@ HWY_INLINE PixelVector pixelVector(const Blocks& t, int first) {
 
 // masked: null where coverage is all that counts.
 template <Keep kKeep>
-HWY_INLINE void fillBlock(MaskedTriangle* masked, const Blocks& t, const PixelVector& v, int column, int row, TileBuffers& out) {
+HWY_INLINE void fillBlock(MaskedTriangle* masked, const Blocks& t, const PixelVector& v, int column, int row, const TileBuffers& out) {
   const DF d;
   const DI di;
   const DU du;
@@ -105,7 +105,7 @@ HWY_INLINE void fillBlock(MaskedTriangle* masked, const Blocks& t, const PixelVe
 }
 
 template <Keep kKeep>
-HWY_INLINE void fillBlocks(MaskedTriangle* masked, const Blocks& t, TileBuffers& out) {
+HWY_INLINE void fillBlocks(MaskedTriangle* masked, const Blocks& t, const TileBuffers& out) {
   const DI di;
   constexpr int kLanesPerBlock = kBlock * kBlock;
   const int lanes = int(hn::Lanes(di));
@@ -140,7 +140,7 @@ HWY_INLINE void fillBlocks(MaskedTriangle* masked, const Blocks& t, TileBuffers&
 }
 
 template <Keep kKeep>
-HWY_NOINLINE void fillApart(const SurfaceContext& context, bool masked, const Blocks& t, TileBuffers& out) {
+HWY_NOINLINE void fillApart(const SurfaceContext& context, bool masked, const Blocks& t, const TileBuffers& out) {
   std::optional<MaskedTriangle> triangle;
   if (masked) triangle.emplace(context, t.id);
   fillBlocks<kKeep>(masked ? &*triangle : nullptr, t, out);
@@ -149,7 +149,7 @@ HWY_NOINLINE void fillApart(const SurfaceContext& context, bool masked, const Bl
 // Where ids are kept the loops are there twice for each caller, with masks and without; elsewhere once, which compiles in
 // half of the time.
 template <Keep kKeep>
-HWY_INLINE void fill(const SurfaceContext& context, bool masked, const Blocks& t, TileBuffers& out) {
+HWY_INLINE void fill(const SurfaceContext& context, bool masked, const Blocks& t, const TileBuffers& out) {
   if constexpr (kKeep != Keep::Visibility) {
     fillApart<kKeep>(context, masked, t, out);
   } else if (HWY_LIKELY(!masked)) {
@@ -160,18 +160,22 @@ HWY_INLINE void fill(const SurfaceContext& context, bool masked, const Blocks& t
   }
 }
 
-// All within one block.
-template <Keep kKeep>
-HWY_INLINE void rasterSingle(const SurfaceContext& context, const SmallTriangle& t, TileBuffers& out) {
+// So many blocks, all in the tile.
+template <Keep kKeep, int kColumns, int kRows>
+HWY_INLINE void rasterFew(const SurfaceContext& context, const SmallTriangle& t, const TileBuffers& out) {
   const int a0 = lowerHalf(t.a), a1 = upperHalf(t.a), b0 = lowerHalf(t.b), b1 = upperHalf(t.b);
   const Blocks c{{t.e[0], t.e[1], t.e[2]}, {a0, a1, -a0 - a1}, {b0, b1, -b0 - b1}, lowerHalf(t.block) - (out.x >> kBlockBits),
-       upperHalf(t.block) - (out.y >> kBlockBits), 1, 1, t.key0, t.xGradient, t.yGradient, t.keyMin, t.keyMax, t.xFromP0, t.yFromP0, t.id};
+       upperHalf(t.block) - (out.y >> kBlockBits), kColumns, kRows, t.key0, t.xGradient, t.yGradient, t.keyMin, t.keyMax, t.xFromP0, t.yFromP0, t.id};
   if (HWY_UNLIKELY(t.masked)) return fill<kKeep>(context, true, c, out);
-  for (int first = 0; first < kBlock * kBlock; first += int(hn::Lanes(DF()))) fillBlock<kKeep>(nullptr, c, pixelVector(c, first), 0, 0, out);
+  for (int first = 0; first < kBlock * kBlock; first += int(hn::Lanes(DF()))) {
+    const PixelVector v = pixelVector(c, first);
+    for (int row = 0; row < kRows; ++row)
+      for (int column = 0; column < kColumns; ++column) fillBlock<kKeep>(nullptr, c, v, column, row, out);
+  }
 }
 
 template <Keep kKeep>
-HWY_INLINE void rasterSmall(const SurfaceContext& context, const SmallTriangle& t, TileBuffers& out) {
+HWY_INLINE void rasterSmall(const SurfaceContext& context, const SmallTriangle& t, const TileBuffers& out) {
   Blocks c;
   const int x = lowerHalf(t.block) - (out.x >> kBlockBits), y = upperHalf(t.block) - (out.y >> kBlockBits);
   c.x = std::max(x, 0);
@@ -190,7 +194,7 @@ HWY_INLINE void rasterSmall(const SurfaceContext& context, const SmallTriangle& 
 }
 
 template <Keep kKeep>
-HWY_INLINE void rasterLarge(const SurfaceContext& context, const LargeTriangle& t, TileBuffers& out) {
+HWY_INLINE void rasterLarge(const SurfaceContext& context, const LargeTriangle& t, const TileBuffers& out) {
   Blocks c;
   const int x0 = std::max(t.x0, out.x), y0 = std::max(t.y0, out.y);
   const int x1 = std::min(t.x1, out.x + out.width - 1), y1 = std::min(t.y1, out.y + out.height - 1);
@@ -213,15 +217,29 @@ HWY_INLINE void rasterLarge(const SurfaceContext& context, const LargeTriangle& 
 }
 
 template <Keep kKeep>
-HWY_NOINLINE void rasterBins(const SurfaceContext& context, int tile, Span<const Bins> bins, TileBuffers& out) {
+HWY_NOINLINE void rasterBins(const SurfaceContext& context, int tile, Span<const Bins> bins, const TileBuffers& buffers) {
+  const TileBuffers out = buffers;  // of our own: vector stores might change any other
   for (const Bins& b : bins) {
     for (uint32_t index : b.large(tile)) rasterLarge<kKeep>(context, b.triangle(index), out);
-    for (const SmallTriangle& t : b.small(tile)) rasterSmall<kKeep>(context, t, out);
-    for (const SmallTriangle& t : b.single(tile)) rasterSingle<kKeep>(context, t, out);
+    for (const SmallTriangle& t : b.small(Bins::kAnySize, tile)) rasterSmall<kKeep>(context, t, out);
+    for (const SmallTriangle& t : b.small(Bins::kTwoByTwo, tile)) rasterFew<kKeep, 2, 2>(context, t, out);
+    for (const SmallTriangle& t : b.small(Bins::kTwoAcross, tile)) rasterFew<kKeep, 2, 1>(context, t, out);
+    for (const SmallTriangle& t : b.small(Bins::kTwoDown, tile)) rasterFew<kKeep, 1, 2>(context, t, out);
+    for (const SmallTriangle& t : b.small(Bins::kOne, tile)) rasterFew<kKeep, 1, 1>(context, t, out);
   }
 }
 
-void RasterTile(const SurfaceContext& context, int tile, Span<const Bins> bins, Keep keep, TileBuffers& out) {
+void ClearTile(Keep keep, const TileBuffers& tile) {
+  const DF d;
+  const DU du;
+  const VF nothing = hn::Set(d, -std::numeric_limits<float>::infinity());
+  for (size_t i = 0; i < tile.pixels(); i += hn::Lanes(d)) {
+    hn::Store(nothing, d, tile.key + i);
+    if (keep == Keep::Visibility) hn::Store(hn::Set(du, kNoTriangle), du, tile.id + i);
+  }
+}
+
+void RasterTile(const SurfaceContext& context, int tile, Span<const Bins> bins, Keep keep, const TileBuffers& out) {
   switch (keep) {
     case Keep::Visibility: return rasterBins<Keep::Visibility>(context, tile, bins, out);
     case Keep::Key: return rasterBins<Keep::Key>(context, tile, bins, out);
@@ -238,6 +256,7 @@ HWY_AFTER_NAMESPACE();
 
 namespace obscura::raster {
 
+HWY_EXPORT(ClearTile);
 HWY_EXPORT(RasterTile);
 
 void TileMemory::reserve(size_t tiles, int tileBits) {
@@ -260,10 +279,7 @@ TileBuffers placeTile(const TileGrid& grid, int tile, TileMemory& memory, size_t
   return t;
 }
 
-void clearTile(Keep keep, TileBuffers& tile) {
-  std::fill_n(tile.key, tile.pixels(), -std::numeric_limits<float>::infinity());
-  if (keep == Keep::Visibility) std::fill_n(tile.id, tile.pixels(), kNoTriangle);
-}
+void clearTile(Keep keep, TileBuffers& tile, Target target) { OBSCURA_DISPATCH(ClearTile, target)(keep, tile); }
 
 void rasterTile(const SurfaceContext& context, int tile, Span<const Bins> bins, Keep keep, TileBuffers& out, Target target) {
   OBSCURA_DISPATCH(RasterTile, target)(context, tile, bins, keep, out);

@@ -55,7 +55,7 @@ TileBuffers placeTile(const TileGrid& grid, int tile, TileMemory& memory, size_t
 enum class Keep { Visibility, Key, KeyWithinLimit };
 
 // Nothing is drawn yet.
-void clearTile(Keep keep, TileBuffers& tile);
+void clearTile(Keep keep, TileBuffers& tile, Target target);
 
 // The winner of a pixel is the triangle with the larger key, on equal keys the one with the smaller id, so the order
 // in which triangles and bins come, at once or in several calls, does not matter.

@@ -119,7 +119,7 @@ TEST_CASE("occlusion: a map hides what lies behind all of its box, and nothing e
     memory.reserve(1, 6);
     const TileGrid grid(61, 50, 6);
     TileBuffers tile = placeTile(grid, 0, memory, 0);
-    clearTile(Keep::Key, tile);
+    clearTile(Keep::Key, tile, target);
     for (int y = 0; y < 52; ++y)  // whole blocks, as triangles across the image's border fill them
       for (int x = 0; x < 64; ++x) tile.key[tile.at(x, y)] = 2;
     tile.key[tile.at(37, 41)] = 1;
