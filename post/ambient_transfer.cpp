@@ -1,138 +1,258 @@
 #include "obscura/post/ambient_transfer.h"
 
+#include <algorithm>
+#include <cstring>
 #include <limits>
+#include <vector>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "obscura/post/ambient_transfer.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <hwy/cache_control.h>
+
 #include "obscura/post/sample_sets.h"
 #include "obscura/post/vector-inl.h"
+#include "obscura/raster/view.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace obscura::post {
 namespace HWY_NAMESPACE {
 
 // Depth map as the containment test sees it.
+template <bool kPerspective>
 struct DepthMap {
-  const Projector& projector;
-  const raster::GBuffer& g;
-  VF bias, radius;
+  const float* depth;
+  VF xScale, yScale, xCenter, yCenter, lastX, lastY, bias, radius, zNear;
+  VI stride;
+
+  explicit DepthMap(const TransferInput& in) {
+    const DF d;
+    const Projector& p = in.projector;
+    depth = in.g->depth.data();
+    xScale = hn::Set(d, p.xScale), yScale = hn::Set(d, p.yScale);
+    xCenter = hn::Set(d, p.xCenter), yCenter = hn::Set(d, p.yCenter);
+    lastX = hn::Set(d, float(p.width - 1)), lastY = hn::Set(d, float(p.height - 1));
+    bias = hn::Set(d, in.settings.bias), radius = hn::Set(d, in.settings.radius), zNear = hn::Set(d, p.zNear);
+    stride = hn::Set(DI(), int32_t(in.g->depth.stride()));
+  }
 
   // Element of the nearest texel, clamped to the image.
   HWY_INLINE VI texelOf(const V3& p) const {
     const DF d;
-    const DI di;
     VF u = p.x, v = p.y;
-    if (projector.perspective) {
+    if (kPerspective) {
       const VF inverse = hn::Div(hn::Set(d, 1.0f), p.z);
       u = hn::Mul(u, inverse);
       v = hn::Mul(v, inverse);
     }
-    u = hn::Add(hn::Mul(u, hn::Set(d, projector.xScale)), hn::Set(d, projector.xCenter));
-    v = hn::Add(hn::Mul(v, hn::Set(d, projector.yScale)), hn::Set(d, projector.yCenter));
-    // The conversion truncates, which is the floor of what is not negative; NaN becomes 0.
-    auto clamp = [&](VF c, int size) HWY_ATTR {
-      const VF last = hn::Set(d, float(size - 1));
-      c = hn::IfThenElseZero(hn::Gt(c, hn::Zero(d)), c);
-      return hn::ConvertTo(di, hn::IfThenElse(hn::Lt(c, last), c, last));
-    };
-    return hn::Add(hn::Mul(clamp(v, projector.height), hn::Set(di, int32_t(g.depth.stride()))), clamp(u, projector.width));
+    u = hn::Add(hn::Mul(u, xScale), xCenter);
+    v = hn::Add(hn::Mul(v, yScale), yCenter);
+    return hn::Add(hn::Mul(floorOf(v, lastY), stride), floorOf(u, lastX));
   }
 
   // Inner exactly when bias < z - z* < R; the upper bound keeps far foreground objects from casting silhouettes.
-  HWY_INLINE MF inner(const V3& p, VI texel) const {
-    const DF d;
-    const VF behind = hn::Sub(p.z, hn::GatherIndex(d, g.depth.data(), texel));
-    const MF between = hn::And(hn::Gt(behind, bias), hn::Lt(behind, radius));
-    return hn::And(between, hn::Gt(p.z, hn::Set(d, projector.zNear)));
+  HWY_INLINE MF inner(VF z, VI texel) const {
+    const VF behind = hn::Sub(z, hn::GatherIndex(DF(), depth, texel));
+    return hn::And(hn::And(hn::Gt(behind, bias), hn::Lt(behind, radius)), hn::Gt(z, zNear));
+  }
+
+ private:
+  // Truncation is the floor of what is not negative. NaN becomes 0: Max takes its second operand on x86, and elsewhere
+  // at the latest the conversion makes it 0.
+  HWY_INLINE static VI floorOf(VF c, VF last) { return truncated(hn::Min(hn::Max(c, hn::Zero(DF())), last)); }
+};
+
+// What the rays of a few vectors of pixels met. Noted here first and subtracted later, so that the tests of one vector
+// need not wait for the hits of another.
+struct Hits {
+  static constexpr size_t kStride = HWY_MAX(hn::MaxLanes(DF()), 8);  // of a sample in a vector: whole bytes
+  static constexpr size_t kRays = 2 * kMaxSamples * kStride;
+  HWY_ALIGN int32_t element[kRays];       // of the G-buffer, what the ray reads
+  HWY_ALIGN uint8_t bits[kRays / 8 + 8];  // whether it meets something there
+
+  HWY_INLINE void set(size_t ray, MF hit, VI what) {
+    hn::StoreU(what, DI(), element + ray);
+    hn::StoreMaskBits(DF(), hit, bits + ray / 8);
+  }
+
+  // For `rays` rays from `first` on: denominator[c][lane] -= albedo of what is met, in the order of the samples.
+  HWY_INLINE void subtract(size_t first, size_t rays, const raster::GBuffer& g, float* const denominator[3]) const {
+    const float *red = g.albedo[0].data(), *green = g.albedo[1].data(), *blue = g.albedo[2].data();
+    float *r = denominator[0], *gr = denominator[1], *b = denominator[2];
+    for (size_t from = first; from < first + rays; from += 64) {
+      const size_t bytes = HWY_MIN(size_t(8), (first + rays - from) / 8);
+      uint64_t word = 0;
+      std::memcpy(&word, bits + from / 8, 8);
+      if (bytes < 8) word &= (uint64_t(1) << 8 * bytes) - 1;
+      for (; word != 0; word &= word - 1) {
+        const size_t ray = from + hwy::Num0BitsBelowLS1Bit_Nonzero64(word), lane = ray % kStride;
+        const size_t met = size_t(element[ray]);
+        const float newR = r[lane] - red[met], newG = gr[lane] - green[met], newB = b[lane] - blue[met];
+        r[lane] = newR, gr[lane] = newG, b[lane] = newB;
+      }
+    }
   }
 };
 
-void transferRow(const TransferInput& in, int y, TransferSums& out) {
+// Rows of the tangent frame T', B', N of a vector of pixels, and where they are.
+struct Pixels {
+  V3 position, t, b, n;
+};
+
+// T = normalize(N x (0, 1, 0.01)), B = N x T, turned by the pixel's angle.
+HWY_INLINE void turnFrame(Pixels& at, VF c, VF s) {
   const DF d;
-  const DI di;
-  const int lanes = int(hn::Lanes(d));
-  const raster::GBuffer& g = *in.g;
-  const Projector& projector = in.projector;
-  const bool neighbour = in.settings.albedo == TransferAlbedo::Neighbour;
-  const int steps = in.settings.steps;
-  const VF all = hn::Set(d, float(in.settings.samples)), zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  const DepthMap map{projector, g, hn::Set(d, in.settings.bias), hn::Set(d, in.settings.radius)};
+  const VF one = hn::Set(d, 1.0f), hundredth = hn::Set(d, 0.01f);
+  const V3& n = at.n;
+  V3 t{hn::Sub(hn::Mul(n.y, hundredth), n.z), hn::Neg(hn::Mul(n.x, hundredth)), n.x};
+  const VF square = dot(t, t);
+  const MF direction = hn::Gt(square, hn::Set(d, 1e-12f));
+  const VF length = hn::Sqrt(hn::IfThenElse(direction, square, one));
+  t = {hn::IfThenElse(direction, hn::Div(t.x, length), one), hn::IfThenElseZero(direction, hn::Div(t.y, length)),
+       hn::IfThenElseZero(direction, hn::Div(t.z, length))};
+  const V3 b = cross(n, t);
+  at.t = {hn::Add(hn::Mul(c, t.x), hn::Mul(s, b.x)), hn::Add(hn::Mul(c, t.y), hn::Mul(s, b.y)),
+          hn::Add(hn::Mul(c, t.z), hn::Mul(s, b.z))};
+  at.b = {hn::Sub(hn::Mul(s, t.x), hn::Mul(c, b.x)), hn::Sub(hn::Mul(s, t.y), hn::Mul(c, b.y)),
+          hn::Sub(hn::Mul(s, t.z), hn::Mul(c, b.z))};
+}
 
-  // The row's four rotations, repeated so that any vector of them can be loaded.
-  HWY_ALIGN float cosines[32], sines[32];
-  for (int x = 0; x < 32; ++x) {
-    const glm::vec2 r = in.settings.interleave ? rotations()[size_t((x & 3) + 4 * (y & 3))] : glm::vec2(1, 0);
-    cosines[x] = r.x;
-    sines[x] = r.y;
+template <bool kPerspective, bool kOneStep, bool kNeighbour>
+class Kernel {
+ public:
+  Kernel(const TransferInput& in, TransferSums& out) : in_(in), g_(*in.g), out_(out), map_(in) {
+    for (const glm::vec3& offset : in.offsets)
+      for (int k = 1; k <= in.settings.steps; ++k) points_.push_back(offset * (float(k) / float(in.settings.steps)));
   }
-  const VF yRay = hn::Set(d, (float(y) + 0.5f - projector.yCenter) * projector.yInverse);
 
-  for (int x = 0; x < g.width; x += lanes) {
-    const VF z = hn::LoadU(d, g.depth.row(y) + x);
-    const MF seen = hn::And(hn::Lt(z, hn::Set(d, std::numeric_limits<float>::infinity())),
-                            hn::RebindMask(d, hn::Lt(hn::Iota(di, x), hn::Set(di, g.width))));
-    VF numerator = all, denominator[3] = {all, all, all};
-    if (!hn::AllFalse(d, seen)) {
-      VF px = hn::Mul(hn::Sub(hn::Add(hn::ConvertTo(d, hn::Iota(di, x)), hn::Set(d, 0.5f)), hn::Set(d, projector.xCenter)),
-                      hn::Set(d, projector.xInverse));
-      VF py = yRay;
-      if (projector.perspective) px = hn::Mul(px, z), py = hn::Mul(py, z);
-
-      // T = normalize(N x (0, 1, 0.01)), B = N x T, turned by the pixel's angle.
-      const V3 n{hn::LoadU(d, g.normal[0].row(y) + x), hn::LoadU(d, g.normal[1].row(y) + x),
-                 hn::Neg(hn::LoadU(d, g.normal[2].row(y) + x))};
-      const VF hundredth = hn::Set(d, 0.01f);
-      V3 t{hn::Sub(hn::Mul(n.y, hundredth), n.z), hn::Neg(hn::Mul(n.x, hundredth)), n.x};
-      const VF square = dot(t, t);
-      const MF direction = hn::Gt(square, hn::Set(d, 1e-12f));
-      const VF length = hn::Sqrt(hn::IfThenElse(direction, square, one));
-      t = {hn::IfThenElse(direction, hn::Div(t.x, length), one), hn::IfThenElseZero(direction, hn::Div(t.y, length)),
-           hn::IfThenElseZero(direction, hn::Div(t.z, length))};
-      const V3 b = cross(n, t);
-      const VF c = hn::LoadU(d, cosines + (x & 3)), s = hn::LoadU(d, sines + (x & 3));
-      const V3 tTurned{hn::Add(hn::Mul(c, t.x), hn::Mul(s, b.x)), hn::Add(hn::Mul(c, t.y), hn::Mul(s, b.y)),
-                       hn::Add(hn::Mul(c, t.z), hn::Mul(s, b.z))};
-      const V3 bTurned{hn::Sub(hn::Mul(s, t.x), hn::Mul(c, b.x)), hn::Sub(hn::Mul(s, t.y), hn::Mul(c, b.y)),
-                       hn::Sub(hn::Mul(s, t.z), hn::Mul(c, b.z))};
-
-      numerator = zero;
-      for (const glm::vec3& offset : in.offsets) {
-        MF hit = hn::MaskFromVec(zero);
-        VI hitTexel = hn::Zero(di);
-        for (int k = 1; k <= steps; ++k) {
-          const float part = float(k) / float(steps);
-          const VF X = hn::Set(d, offset.x * part), Y = hn::Set(d, offset.y * part), Z = hn::Set(d, offset.z * part);
-          auto shifted = [&](VF p, VF tc, VF bc, VF nc) HWY_ATTR {
-            return hn::Add(p, hn::Add(hn::Add(hn::Mul(X, tc), hn::Mul(Y, bc)), hn::Mul(Z, nc)));
-          };
-          const V3 p{shifted(px, tTurned.x, bTurned.x, n.x), shifted(py, tTurned.y, bTurned.y, n.y),
-                     shifted(z, tTurned.z, bTurned.z, n.z)};
-          const VI texel = map.texelOf(p);
-          const MF first = hn::AndNot(hit, map.inner(p, texel));
-          hitTexel = hn::IfThenElse(hn::RebindMask(di, first), texel, hitTexel);
-          hit = hn::Or(hit, first);
+  void row(int y) {
+    const DF d;
+    const int lanes = int(hn::Lanes(d));
+    startRow(y);
+    const VF all = hn::Set(d, float(in_.settings.samples));
+    const VF infinity = hn::Set(d, std::numeric_limits<float>::infinity());
+    for (int x = 0; x < g_.width; x += lanes) {
+      const VF z = hn::LoadU(d, g_.depth.row(y) + x);
+      const MF seen = hn::And(hn::Lt(z, infinity),
+                              hn::RebindMask(d, hn::Lt(hn::Iota(DI(), x), hn::Set(DI(), g_.width))));
+      for (int c = 0; kNeighbour && c < 3; ++c) hn::StoreU(all, d, out_.denominator[c].row(y) + x);
+      VF numerator = all;
+      if (!hn::AllFalse(d, seen)) {
+        fetchAhead(x, y);
+        // A ray from infinity meets nothing: z - z* < R never holds.
+        numerator = outerRays(pixels(x, y, hn::IfThenElse(seen, z, infinity)));
+        if (kNeighbour) {
+          pending_[pendingCount_++] = x;
+          if (pendingCount_ == pendingMost_) subtractPending(y);
         }
-        numerator = hn::Add(numerator, hn::IfThenZeroElse(hit, one));
-        if (neighbour && !hn::AllFalse(d, hn::And(hit, seen)))
-          for (int ch = 0; ch < 3; ++ch) {
-            const VF a = hn::GatherIndex(d, g.albedo[ch].data(), hitTexel);
-            denominator[ch] = hn::Sub(denominator[ch], hn::IfThenElseZero(hit, a));
-          }
       }
-      numerator = hn::IfThenElse(seen, numerator, all);
-      for (VF& v : denominator) v = hn::IfThenElse(seen, v, all);
+      hn::StoreU(numerator, d, out_.numerator.row(y) + x);
     }
-    hn::StoreU(numerator, d, out.numerator.row(y) + x);
-    if (neighbour)
-      for (int ch = 0; ch < 3; ++ch) hn::StoreU(denominator[ch], d, out.denominator[ch].row(y) + x);
+    subtractPending(y);
   }
+
+ private:
+  void startRow(int y) {
+    for (int x = 0; x < 32; ++x) {
+      const glm::vec2 r = in_.settings.interleave ? rotations()[size_t((x & 3) + 4 * (y & 3))] : glm::vec2(1, 0);
+      cosines_[x] = r.x;
+      sines_[x] = r.y;
+    }
+    yRay_ = hn::Set(DF(), (float(y) + 0.5f - in_.projector.yCenter) * in_.projector.yInverse);
+  }
+
+  // The gathers' lines come from far down; no hardware sees that they advance by a row at a time.
+  HWY_INLINE void fetchAhead(int x, int y) const {
+    constexpr int kRows = 64;
+    const int row = std::min(y + kRows, g_.height - 1);
+    hwy::Prefetch(g_.depth.row(row) + x);
+    for (int c = 0; kNeighbour && c < 3; ++c) hwy::Prefetch(g_.albedo[c].row(row) + x);
+  }
+
+  HWY_INLINE Pixels pixels(int x, int y, VF z) const {
+    const DF d;
+    Pixels at;
+    VF px = hn::Add(hn::ConvertTo(d, hn::Iota(DI(), x)), hn::Set(d, 0.5f)), py = yRay_;
+    px = hn::Mul(hn::Sub(px, hn::Set(d, in_.projector.xCenter)), hn::Set(d, in_.projector.xInverse));
+    if (kPerspective) px = hn::Mul(px, z), py = hn::Mul(py, z);
+    at.position = {px, py, z};
+    at.n = {hn::LoadU(d, g_.normal[0].row(y) + x), hn::LoadU(d, g_.normal[1].row(y) + x),
+            hn::Neg(hn::LoadU(d, g_.normal[2].row(y) + x))};
+    turnFrame(at, hn::LoadU(d, cosines_ + (x & 3)), hn::LoadU(d, sines_ + (x & 3)));
+    return at;
+  }
+
+  // Counts the rays that stay outside; with kNeighbour also notes what the others meet.
+  HWY_INLINE VF outerRays(const Pixels& at) {
+    const DF d;
+    const DI di;
+    const VF one = hn::Set(d, 1.0f);
+    const size_t samples = in_.offsets.size(), steps = kOneStep ? 1 : size_t(in_.settings.steps);
+    const size_t firstRay = size_t(pendingCount_) * samples * Hits::kStride;
+    const glm::vec3* point = points_.data();
+    VF outer = hn::Zero(d);
+    for (size_t i = 0; i < samples; ++i) {
+      MF hit = hn::MaskFromVec(hn::Zero(d));
+      VI met = hn::Zero(di);
+      for (size_t k = 0; k < steps; ++k, ++point) {
+        const VF X = hn::Set(d, point->x), Y = hn::Set(d, point->y), Z = hn::Set(d, point->z);
+        auto shifted = [&](VF p, VF t, VF b, VF n) HWY_ATTR {
+          return hn::Add(p, hn::Add(hn::Add(hn::Mul(X, t), hn::Mul(Y, b)), hn::Mul(Z, n)));
+        };
+        const V3 p{shifted(at.position.x, at.t.x, at.b.x, at.n.x), shifted(at.position.y, at.t.y, at.b.y, at.n.y),
+                   shifted(at.position.z, at.t.z, at.b.z, at.n.z)};
+        const VI texel = map_.texelOf(p);
+        const MF inner = map_.inner(p.z, texel);
+        met = kOneStep ? texel : hn::IfThenElse(hn::RebindMask(di, hn::AndNot(hit, inner)), texel, met);
+        hit = kOneStep ? inner : hn::Or(hit, inner);
+      }
+      outer = hn::IfThenElse(hit, outer, hn::Add(outer, one));
+      if (kNeighbour) hits_.set(firstRay + i * Hits::kStride, hit, met);
+    }
+    return outer;
+  }
+
+  void subtractPending(int y) {
+    const size_t rays = in_.offsets.size() * Hits::kStride;
+    for (int v = 0; v < pendingCount_; ++v) {
+      float* denominator[3];
+      for (int c = 0; c < 3; ++c) denominator[c] = out_.denominator[c].row(y) + pending_[v];
+      hits_.subtract(size_t(v) * rays, rays, g_, denominator);
+    }
+    pendingCount_ = 0;
+  }
+
+  const TransferInput& in_;
+  const raster::GBuffer& g_;
+  TransferSums& out_;
+  const DepthMap<kPerspective> map_;
+  std::vector<glm::vec3> points_;            // in the frame (T', B', N): those of a ray one after the other
+  HWY_ALIGN float cosines_[32], sines_[32];  // the row's four rotations, repeated: any vector of them can be loaded
+  VF yRay_;
+  static constexpr int kPendingMost = 16;
+  const int pendingMost_ = std::min(kPendingMost, int(2 * kMaxSamples / std::max<size_t>(in_.offsets.size(), 1)));
+  int pendingCount_ = 0, pending_[kPendingMost];  // vectors whose hits are noted: their x
+  Hits hits_;
+};
+
+template <bool kPerspective, bool kOneStep, bool kNeighbour>
+void transferRows(const TransferInput& in, int y0, int y1, TransferSums& out) {
+  Kernel<kPerspective, kOneStep, kNeighbour> kernel(in, out);
+  for (int y = y0; y < y1; ++y) kernel.row(y);
+}
+
+template <bool kPerspective, bool kOneStep>
+void transferRows(const TransferInput& in, int y0, int y1, TransferSums& out) {
+  in.settings.albedo == TransferAlbedo::Neighbour ? transferRows<kPerspective, kOneStep, true>(in, y0, y1, out)
+                                                  : transferRows<kPerspective, kOneStep, false>(in, y0, y1, out);
 }
 
 void AmbientTransfer(const TransferInput& in, int y0, int y1, TransferSums& out) {
-  for (int y = y0; y < y1; ++y) transferRow(in, y, out);
+  const bool perspective = in.projector.perspective, oneStep = in.settings.steps == 1;
+  if (perspective) oneStep ? transferRows<true, true>(in, y0, y1, out) : transferRows<true, false>(in, y0, y1, out);
+  else oneStep ? transferRows<false, true>(in, y0, y1, out) : transferRows<false, false>(in, y0, y1, out);
 }
 
 }  // namespace HWY_NAMESPACE
