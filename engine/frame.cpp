@@ -77,17 +77,20 @@ struct Renderer::State {
   std::vector<raster::MeshView> meshes;
   std::vector<raster::Instance> instances;
   std::vector<raster::TextureView> textures;
+  post::DepthBounds bounds;
   post::TransferSums sums;
 
   State(const raster::Settings& s, bool ref)
       : settings(s), reference(ref), target(raster::chooseTarget(s.target)), rasterizer(s), parallel(ref ? 1 : s.threads) {}
 
   raster::DrawList drawList(const Scene& scene);
+  post::TransferStatistics transferSums(post::TransferInput& in);
+
+  static constexpr size_t kRowsPerTask = 8;
 
   // Calls body(y0, y1) for bands of rows, in parallel.
   template <class Body>
   void forRows(int height, const Body& body) {
-    constexpr size_t kRowsPerTask = 8;
     parallel.forRanges(size_t(height), kRowsPerTask, [&](size_t y0, size_t y1, int) { body(int(y0), int(y1)); });
   }
 };
@@ -110,6 +113,30 @@ raster::DrawList Renderer::State::drawList(const Scene& scene) {
   return {instances, scene.materials, textures};
 }
 
+post::TransferStatistics Renderer::State::transferSums(post::TransferInput& in) {
+  const int w = in.g->width, h = in.g->height;
+  sums = post::makeTransferSums(in, std::move(sums));
+  if (reference) {
+    post::ambientTransferRef(in, 0, h, sums);
+    return {};
+  }
+  if (settings.skip) {
+    bounds = post::makeDepthBounds(w, h, std::move(bounds));
+    constexpr size_t kCellRowsPerTask = 4;
+    parallel.forRanges(size_t(bounds.c.height()), kCellRowsPerTask, [&](size_t row0, size_t row1, int) {
+      post::boundDepth(*in.g, in.projector, int(row0), int(row1), bounds, target);
+    });
+    in.bounds = &bounds;
+  }
+  std::vector<post::TransferStatistics> found(size_t(parallel.workers()));
+  parallel.forRanges(size_t(h), kRowsPerTask, [&](size_t y0, size_t y1, int worker) {
+    found[size_t(worker)].add(post::ambientTransfer(in, int(y0), int(y1), sums, target));
+  });
+  post::TransferStatistics all;
+  for (const post::TransferStatistics& f : found) all.add(f);
+  return all;
+}
+
 Result<Done> Renderer::render(const Scene& scene, const FrameSettings& settings, Frame& frame) try {
   if (const char* wrong = wrongSetting(settings)) return Error{ErrorCode::Usage, wrong, "", ""};
   const raster::FloatEnvironment environment;
@@ -127,13 +154,11 @@ Result<Done> Renderer::render(const Scene& scene, const FrameSettings& settings,
 
   frame.width = w;
   frame.height = h;
-  const post::TransferInput in{&frame.g, post::makeProjector(settings.camera, w, h), settings.transfer,
-                               post::transferSamples(settings.transfer)};
+  post::TransferInput in{&frame.g, post::makeProjector(settings.camera, w, h), settings.transfer,
+                         post::transferSamples(settings.transfer)};
+  frame.transferStatistics = {};
   if (needs.sums) {
-    s.sums = post::makeTransferSums(in, std::move(s.sums));
-    s.forRows(h, [&](int y0, int y1) {
-      s.reference ? post::ambientTransferRef(in, y0, y1, s.sums) : post::ambientTransfer(in, y0, y1, s.sums, s.target);
-    });
+    frame.transferStatistics = s.transferSums(in);
     frame.timings.transfer = watch.lap();
 
     frame.transfer = post::makeTransfer(w, h, needs.obscurance, needs.w, std::move(frame.transfer));

@@ -1,7 +1,6 @@
 #include "obscura/post/ambient_transfer.h"
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 #include <vector>
 
@@ -12,9 +11,10 @@
 
 #include <hwy/cache_control.h>
 
+#include "obscura/post/open_block-inl.h"
+#include "obscura/post/ray_hits-inl.h"
 #include "obscura/post/sample_sets.h"
 #include "obscura/post/vector-inl.h"
-#include "obscura/raster/view.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace obscura::post {
@@ -64,98 +64,67 @@ struct DepthMap {
   HWY_INLINE static VI floorOf(VF c, VF last) { return truncated(hn::Min(hn::Max(c, hn::Zero(DF())), last)); }
 };
 
-// What the rays of a few vectors of pixels met. Noted here first and subtracted later, so that the tests of one vector
-// need not wait for the hits of another.
-struct Hits {
-  static constexpr size_t kStride = HWY_MAX(hn::MaxLanes(DF()), 8);  // of a sample in a vector: whole bytes
-  static constexpr size_t kRays = 2 * kMaxSamples * kStride;
-  HWY_ALIGN int32_t element[kRays];       // of the G-buffer, what the ray reads
-  HWY_ALIGN uint8_t bits[kRays / 8 + 8];  // whether it meets something there
-
-  HWY_INLINE void set(size_t ray, MF hit, VI what) {
-    hn::StoreU(what, DI(), element + ray);
-    hn::StoreMaskBits(DF(), hit, bits + ray / 8);
-  }
-
-  // For `rays` rays from `first` on: denominator[c][lane] -= albedo of what is met, in the order of the samples.
-  HWY_INLINE void subtract(size_t first, size_t rays, const raster::GBuffer& g, float* const denominator[3]) const {
-    const float *red = g.albedo[0].data(), *green = g.albedo[1].data(), *blue = g.albedo[2].data();
-    float *r = denominator[0], *gr = denominator[1], *b = denominator[2];
-    for (size_t from = first; from < first + rays; from += 64) {
-      const size_t bytes = HWY_MIN(size_t(8), (first + rays - from) / 8);
-      uint64_t word = 0;
-      std::memcpy(&word, bits + from / 8, 8);
-      if (bytes < 8) word &= (uint64_t(1) << 8 * bytes) - 1;
-      for (; word != 0; word &= word - 1) {
-        const size_t ray = from + hwy::Num0BitsBelowLS1Bit_Nonzero64(word), lane = ray % kStride;
-        const size_t met = size_t(element[ray]);
-        const float newR = r[lane] - red[met], newG = gr[lane] - green[met], newB = b[lane] - blue[met];
-        r[lane] = newR, gr[lane] = newG, b[lane] = newB;
-      }
-    }
-  }
-};
-
-// Rows of the tangent frame T', B', N of a vector of pixels, and where they are.
+// Where the pixels of a vector are, and their frame.
 struct Pixels {
   V3 position, t, b, n;
 };
 
-// T = normalize(N x (0, 1, 0.01)), B = N x T, turned by the pixel's angle.
-HWY_INLINE void turnFrame(Pixels& at, VF c, VF s) {
+// T = normalize(N x (0, 1, 0.01)), B = N x T.
+HWY_INLINE void setFrame(Pixels& at) {
   const DF d;
   const VF one = hn::Set(d, 1.0f), hundredth = hn::Set(d, 0.01f);
   const V3& n = at.n;
-  V3 t{hn::Sub(hn::Mul(n.y, hundredth), n.z), hn::Neg(hn::Mul(n.x, hundredth)), n.x};
+  const V3 t{hn::Sub(hn::Mul(n.y, hundredth), n.z), hn::Neg(hn::Mul(n.x, hundredth)), n.x};
   const VF square = dot(t, t);
   const MF direction = hn::Gt(square, hn::Set(d, 1e-12f));
   const VF length = hn::Sqrt(hn::IfThenElse(direction, square, one));
-  t = {hn::IfThenElse(direction, hn::Div(t.x, length), one), hn::IfThenElseZero(direction, hn::Div(t.y, length)),
-       hn::IfThenElseZero(direction, hn::Div(t.z, length))};
-  const V3 b = cross(n, t);
+  at.t = {hn::IfThenElse(direction, hn::Div(t.x, length), one), hn::IfThenElseZero(direction, hn::Div(t.y, length)),
+          hn::IfThenElseZero(direction, hn::Div(t.z, length))};
+  at.b = cross(n, at.t);
+}
+
+// Turns T and B by the pixel's angle.
+HWY_INLINE void turnFrame(Pixels& at, VF c, VF s) {
+  const V3 t = at.t, b = at.b;
   at.t = {hn::Add(hn::Mul(c, t.x), hn::Mul(s, b.x)), hn::Add(hn::Mul(c, t.y), hn::Mul(s, b.y)),
           hn::Add(hn::Mul(c, t.z), hn::Mul(s, b.z))};
   at.b = {hn::Sub(hn::Mul(s, t.x), hn::Mul(c, b.x)), hn::Sub(hn::Mul(s, t.y), hn::Mul(c, b.y)),
           hn::Sub(hn::Mul(s, t.z), hn::Mul(c, b.z))};
 }
 
+// Rows are worked on in segments of 16 pixels, so that what is skipped does not depend on the vector's length.
+constexpr int kSegment = 16;
+static_assert(DepthBounds::kCellWidth == kSegment, "a segment lies in one block");
+
 template <bool kPerspective, bool kOneStep, bool kNeighbour>
 class Kernel {
  public:
-  Kernel(const TransferInput& in, TransferSums& out) : in_(in), g_(*in.g), out_(out), map_(in) {
-    for (const glm::vec3& offset : in.offsets)
-      for (int k = 1; k <= in.settings.steps; ++k) points_.push_back(offset * (float(k) / float(in.settings.steps)));
-  }
+  Kernel(const TransferInput& in, TransferSums& out)
+      : in_(in), g_(*in.g), out_(out), map_(in), points_(pointsOf(in)), reach_(points_) {}
 
-  void row(int y) {
-    const DF d;
-    const int lanes = int(hn::Lanes(d));
-    startRow(y);
-    const VF all = hn::Set(d, float(in_.settings.samples));
-    const VF infinity = hn::Set(d, std::numeric_limits<float>::infinity());
-    for (int x = 0; x < g_.width; x += lanes) {
-      const VF z = hn::LoadU(d, g_.depth.row(y) + x);
-      const MF seen = hn::And(hn::Lt(z, infinity),
-                              hn::RebindMask(d, hn::Lt(hn::Iota(DI(), x), hn::Set(DI(), g_.width))));
-      for (int c = 0; kNeighbour && c < 3; ++c) hn::StoreU(all, d, out_.denominator[c].row(y) + x);
-      VF numerator = all;
-      if (!hn::AllFalse(d, seen)) {
-        fetchAhead(x, y);
-        // A ray from infinity meets nothing: z - z* < R never holds.
-        numerator = outerRays(pixels(x, y, hn::IfThenElse(seen, z, infinity)));
-        if (kNeighbour) {
-          pending_[pendingCount_++] = x;
-          if (pendingCount_ == pendingMost_) subtractPending(y);
-        }
-      }
-      hn::StoreU(numerator, d, out_.numerator.row(y) + x);
+  TransferStatistics rows(int y0, int y1) {
+    if (in_.bounds) blocks_.resize(size_t(in_.bounds->c.width()));
+    for (int y = y0; y < y1; ++y) {
+      if (in_.bounds && (y == y0 || y % DepthBounds::kCellHeight == 0))
+        for (size_t column = 0; column < blocks_.size(); ++column)
+          blocks_[column] = openBlock<kPerspective>(in_, reach_, int(column), y / DepthBounds::kCellHeight);
+      startRow(y);
+      for (int x = 0; x < g_.width; x += kSegment) segment(x, y);
+      subtractPending(y);
     }
-    subtractPending(y);
+    return statistics_;
   }
 
  private:
+  static std::vector<glm::vec3> pointsOf(const TransferInput& in) {
+    std::vector<glm::vec3> points;
+    for (const glm::vec3& offset : in.offsets)
+      for (int k = 1; k <= in.settings.steps; ++k) points.push_back(offset * (float(k) / float(in.settings.steps)));
+    return points;
+  }
+
   void startRow(int y) {
-    for (int x = 0; x < 32; ++x) {
+    for (int x = 0; x < kSegment; ++x) {
       const glm::vec2 r = in_.settings.interleave ? rotations()[size_t((x & 3) + 4 * (y & 3))] : glm::vec2(1, 0);
       cosines_[x] = r.x;
       sines_[x] = r.y;
@@ -163,25 +132,80 @@ class Kernel {
     yRay_ = hn::Set(DF(), (float(y) + 0.5f - in_.projector.yCenter) * in_.projector.yInverse);
   }
 
-  // The gathers' lines come from far down; no hardware sees that they advance by a row at a time.
+  HWY_INLINE void segment(int x, int y) {
+    const DF d;
+    constexpr int kLanes = int(hn::MaxLanes(DF())), kVectors = kSegment / kLanes;
+    const VF all = hn::Set(d, float(in_.settings.samples));
+    const VF infinity = hn::Set(d, std::numeric_limits<float>::infinity());
+    float* numerator = out_.numerator.row(y) + x;
+    MF seen[kVectors];
+    uint64_t seenCount = 0;
+    for (int v = 0; v < kVectors; ++v) {
+      const VI column = hn::Iota(DI(), x + v * kLanes);
+      seen[v] = hn::And(hn::Lt(hn::LoadU(d, g_.depth.row(y) + x + v * kLanes), infinity),
+                        hn::RebindMask(d, hn::Lt(column, hn::Set(DI(), g_.width))));
+      seenCount += hn::CountTrue(d, seen[v]);
+      hn::StoreU(all, d, numerator + v * kLanes);
+      for (int c = 0; kNeighbour && c < 3; ++c) hn::StoreU(all, d, out_.denominator[c].row(y) + x + v * kLanes);
+    }
+    statistics_.empty += uint64_t(std::min(kSegment, g_.width - x)) - seenCount;
+    uint8_t& open = out_.open.at(x / kSegment, y);
+    open = 1;
+    if (seenCount == 0) return;
+
+    fetchAhead(x, y);
+    Pixels pixels[kVectors];
+    for (int v = 0; v < kVectors; ++v) {
+      // A ray from infinity meets nothing: z - z* < R never holds.
+      const VF z = hn::IfThenElse(seen[v], hn::LoadU(d, g_.depth.row(y) + x + v * kLanes), infinity);
+      place(pixels[v], x + v * kLanes, y, z);
+      setFrame(pixels[v]);
+    }
+    if (in_.bounds) {
+      const OpenBlock& block = blocks_[size_t(x / kSegment)];
+      bool known = block.known;
+      for (int v = 0; v < kVectors && known; ++v) {
+        const Pixels& at = pixels[v];
+        const MF outer =
+            knownOpen<kPerspective>(block, reach_, at.position, at.t, at.b, at.n, in_.settings.bias);
+        known = hn::AllTrue(d, hn::Or(hn::Not(seen[v]), outer));
+      }
+      if (known) {
+        statistics_.open += seenCount;
+        return;
+      }
+    }
+    statistics_.sampled += seenCount;
+    for (int v = 0; v < kVectors; ++v) {
+      turnFrame(pixels[v], hn::LoadU(d, cosines_ + v * kLanes), hn::LoadU(d, sines_ + v * kLanes));
+      const VF outer = outerRays(pixels[v]);
+      open &= uint8_t(hn::AllTrue(d, hn::Eq(outer, all)));
+      hn::StoreU(outer, d, numerator + v * kLanes);
+      if (kNeighbour) {
+        pending_[pendingCount_++] = x + v * kLanes;
+        if (pendingCount_ == pendingMost_) subtractPending(y);
+      }
+    }
+  }
+
+  // The gathers' lines come from far down, and no hardware sees that they advance by a row at a time.
   HWY_INLINE void fetchAhead(int x, int y) const {
     constexpr int kRows = 64;
     const int row = std::min(y + kRows, g_.height - 1);
     hwy::Prefetch(g_.depth.row(row) + x);
     for (int c = 0; kNeighbour && c < 3; ++c) hwy::Prefetch(g_.albedo[c].row(row) + x);
+    const int next = std::min(y + 1, g_.height - 1);
+    for (int c = 0; c < 3; ++c) hwy::Prefetch(g_.normal[c].row(next) + x);
   }
 
-  HWY_INLINE Pixels pixels(int x, int y, VF z) const {
+  HWY_INLINE void place(Pixels& at, int x, int y, VF z) const {
     const DF d;
-    Pixels at;
     VF px = hn::Add(hn::ConvertTo(d, hn::Iota(DI(), x)), hn::Set(d, 0.5f)), py = yRay_;
     px = hn::Mul(hn::Sub(px, hn::Set(d, in_.projector.xCenter)), hn::Set(d, in_.projector.xInverse));
     if (kPerspective) px = hn::Mul(px, z), py = hn::Mul(py, z);
     at.position = {px, py, z};
     at.n = {hn::LoadU(d, g_.normal[0].row(y) + x), hn::LoadU(d, g_.normal[1].row(y) + x),
             hn::Neg(hn::LoadU(d, g_.normal[2].row(y) + x))};
-    turnFrame(at, hn::LoadU(d, cosines_ + (x & 3)), hn::LoadU(d, sines_ + (x & 3)));
-    return at;
   }
 
   // Counts the rays that stay outside; with kNeighbour also notes what the others meet.
@@ -228,8 +252,11 @@ class Kernel {
   const raster::GBuffer& g_;
   TransferSums& out_;
   const DepthMap<kPerspective> map_;
-  std::vector<glm::vec3> points_;            // in the frame (T', B', N): those of a ray one after the other
-  HWY_ALIGN float cosines_[32], sines_[32];  // the row's four rotations, repeated: any vector of them can be loaded
+  const std::vector<glm::vec3> points_;  // in the frame (T', B', N): those of a ray one after the other
+  const Reach reach_;
+  std::vector<OpenBlock> blocks_;  // of the row of cells
+  TransferStatistics statistics_;
+  HWY_ALIGN float cosines_[kSegment], sines_[kSegment];  // the row's rotations
   VF yRay_;
   static constexpr int kPendingMost = 16;
   const int pendingMost_ = std::min(kPendingMost, int(2 * kMaxSamples / std::max<size_t>(in_.offsets.size(), 1)));
@@ -238,21 +265,23 @@ class Kernel {
 };
 
 template <bool kPerspective, bool kOneStep, bool kNeighbour>
-void transferRows(const TransferInput& in, int y0, int y1, TransferSums& out) {
+TransferStatistics transferRows(const TransferInput& in, int y0, int y1, TransferSums& out) {
   Kernel<kPerspective, kOneStep, kNeighbour> kernel(in, out);
-  for (int y = y0; y < y1; ++y) kernel.row(y);
+  return kernel.rows(y0, y1);
 }
 
 template <bool kPerspective, bool kOneStep>
-void transferRows(const TransferInput& in, int y0, int y1, TransferSums& out) {
-  in.settings.albedo == TransferAlbedo::Neighbour ? transferRows<kPerspective, kOneStep, true>(in, y0, y1, out)
-                                                  : transferRows<kPerspective, kOneStep, false>(in, y0, y1, out);
+TransferStatistics transferRows(const TransferInput& in, int y0, int y1, TransferSums& out) {
+  const bool neighbour = in.settings.albedo == TransferAlbedo::Neighbour;
+  if (neighbour) return transferRows<kPerspective, kOneStep, true>(in, y0, y1, out);
+  return transferRows<kPerspective, kOneStep, false>(in, y0, y1, out);
 }
 
-void AmbientTransfer(const TransferInput& in, int y0, int y1, TransferSums& out) {
-  const bool perspective = in.projector.perspective, oneStep = in.settings.steps == 1;
-  if (perspective) oneStep ? transferRows<true, true>(in, y0, y1, out) : transferRows<true, false>(in, y0, y1, out);
-  else oneStep ? transferRows<false, true>(in, y0, y1, out) : transferRows<false, false>(in, y0, y1, out);
+TransferStatistics AmbientTransfer(const TransferInput& in, int y0, int y1, TransferSums& out) {
+  const bool oneStep = in.settings.steps == 1;
+  if (in.projector.perspective)
+    return oneStep ? transferRows<true, true>(in, y0, y1, out) : transferRows<true, false>(in, y0, y1, out);
+  return oneStep ? transferRows<false, true>(in, y0, y1, out) : transferRows<false, false>(in, y0, y1, out);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -267,14 +296,15 @@ namespace obscura::post {
 
 HWY_EXPORT(AmbientTransfer);
 
-void ambientTransfer(const TransferInput& in, int y0, int y1, TransferSums& out, raster::Target target) {
+TransferStatistics ambientTransfer(const TransferInput& in, int y0, int y1, TransferSums& out, raster::Target target) {
   const raster::FloatEnvironment environment;
-  OBSCURA_DISPATCH(AmbientTransfer, target)(in, y0, y1, out);
+  return OBSCURA_DISPATCH(AmbientTransfer, target)(in, y0, y1, out);
 }
 
 TransferSums makeTransferSums(const TransferInput& in, TransferSums used) {
   const bool denominators = in.settings.albedo == TransferAlbedo::Neighbour;
   used.numerator.resize(in.g->width, in.g->height);
+  used.open.resize((in.g->width + 15) / 16, in.g->height);
   for (auto& plane : used.denominator) plane.resize(denominators ? in.g->width : 0, denominators ? in.g->height : 0);
   return used;
 }

@@ -24,6 +24,16 @@ struct Sums {
 // Where the rows of a window are read; indices 0 ... 3 stand for y - 2 ... y + 1, clamped at the image's border.
 struct Window {
   const float *depth[4], *numerator[4], *denominator[3][4];
+  const uint8_t* open[4];
+
+  // All rays of all windows of the 16 pixels from 16 segment on stay outside: O and W are 1 whichever pixels count.
+  HWY_INLINE bool isOpen(int segment, int segments, bool filter) const {
+    if (!filter) return open[2][segment];
+    const int before = std::max(segment - 1, 0), after = std::min(segment + 1, segments - 1);
+    int all = 1;
+    for (int j = 0; j < 4; ++j) all &= open[j][before] & open[j][segment] & open[j][after];
+    return all;
+  }
 };
 
 // kChannels of the denominator are summed: 3 for the neighbours' W, else 0. kInside: no lane's window leaves the row.
@@ -84,6 +94,7 @@ void filterRow(const TransferInput& in, const TransferSums& sums, int y, Transfe
     const int row = std::clamp(y + j - 2, 0, g.height - 1);
     window.depth[j] = g.depth.row(row);
     window.numerator[j] = sums.numerator.row(row);
+    window.open[j] = sums.open.row(row);
     for (int c = 0; c < kChannels; ++c) window.denominator[c][j] = sums.denominator[c].row(row);
   }
   float* obscurance = out.obscurance.empty() ? nullptr : out.obscurance.row(y);
@@ -93,9 +104,11 @@ void filterRow(const TransferInput& in, const TransferSums& sums, int y, Transfe
     w[c] = out.w[c].row(y);
     if (kChannels == 0) albedo[c] = g.albedo[c].row(y);
   }
+  bool open = false;
   for (int x = 0; x < g.width; x += int(hn::Lanes(d))) {
+    if (x % 16 == 0) open = window.isOpen(x / 16, sums.open.width(), in.settings.filter);
     const MF seen = hn::Lt(hn::LoadU(d, window.depth[2] + x), infinity);
-    if (hn::AllFalse(d, seen)) {
+    if (open || hn::AllFalse(d, seen)) {
       if (obscurance) hn::StoreU(one, d, obscurance + x);
       for (int c = 0; w[0] && c < 3; ++c) hn::StoreU(one, d, w[c] + x);
       continue;
@@ -117,9 +130,9 @@ void filterRow(const TransferInput& in, const TransferSums& sums, int y, Transfe
       VF denominator = s.denominator[c];
       if (kChannels == 0)
         denominator = hn::Sub(total, hn::Mul(hn::LoadU(d, albedo[c] + x), hn::Sub(total, s.numerator)));
-      const MF open = hn::Not(hn::Gt(denominator, s.numerator));
-      const VF quotient = hn::Div(s.numerator, hn::IfThenElse(open, one, denominator));
-      hn::StoreU(hn::IfThenElse(hn::AndNot(open, seen), quotient, one), d, w[c] + x);
+      const MF whole = hn::Not(hn::Gt(denominator, s.numerator));
+      const VF quotient = hn::Div(s.numerator, hn::IfThenElse(whole, one, denominator));
+      hn::StoreU(hn::IfThenElse(hn::AndNot(whole, seen), quotient, one), d, w[c] + x);
     }
   }
 }
