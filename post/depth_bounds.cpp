@@ -9,6 +9,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <hwy/cache_control.h>
+
 #include "obscura/post/vector-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -65,10 +67,12 @@ void boundCell(const raster::GBuffer& g, int column, int row, DepthBounds& out) 
   const int x0 = column * DepthBounds::kCellWidth, y0 = row * DepthBounds::kCellHeight;
   const int x1 = std::min(x0 + DepthBounds::kCellWidth, g.width) - 1;
   const int y1 = std::min(y0 + DepthBounds::kCellHeight, g.height) - 1;
+  constexpr int kAhead = 6 * DepthBounds::kCellWidth;  // rows are too far apart for the hardware to fetch ahead
   const Slopes s = slopesOf<kPerspective>(g, x0, x1, y0, y1);
   const VF a = hn::Set(d, s.a), infinity = hn::Set(d, kInfinity), none = hn::Set(d, -kInfinity);
   VF highest = none, nearest = infinity;
   for (int y = y0; y <= y1; ++y) {
+    hwy::Prefetch(g.depth.row(y) + x0 + kAhead);
     const VF bv = hn::Set(d, s.b * (float(y) + 0.5f));
     for (int x = x0; x <= x1; x += int(hn::Lanes(d))) {
       const VI column_ = hn::Iota(di, x);
