@@ -7,6 +7,7 @@
 #include "obscura/apps/bench_frame.h"
 #include "obscura/apps/bench_raster.h"
 #include "obscura/apps/bench_scaling.h"
+#include "obscura/apps/bench_transfer.h"
 
 int main(int argc, char** argv) {
   CLI::App app{"Benchmarks of obscura. Times are medians; to compare, take ratios from one run."};
@@ -14,6 +15,8 @@ int main(int argc, char** argv) {
   int status = 0;
   obscura::apps::FrameBenchmark frame;
   frame.addTo(app, status);
+  obscura::apps::TransferBenchmark transfer;
+  transfer.addTo(app, status);
   obscura::apps::RasterBenchmark raster;
   raster.addTo(app, status);
   obscura::apps::ScalingBenchmark scaling;

@@ -33,8 +33,7 @@ int fail(const engine::Error& error) {
 
 }  // namespace
 
-FrameBenchmark::FrameBenchmark() {
-  // What the peers compute: neighbours' albedo, linear membership, R = 0.5, bias 0.005, threshold 0.1 scene units.
+void asPeersCompute(FrameOptions& options) {
   options.transfer.albedo = post::TransferAlbedo::Neighbour;
   options.radius = 0.5;
   options.bias = 0.005;

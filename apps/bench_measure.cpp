@@ -17,11 +17,11 @@ double millisecondsSince(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
+}  // namespace
+
 Spread spreadOf(const std::vector<double>& values) {
   return {quantile(values, 0.1), quantile(values, 0.5), quantile(values, 0.9)};
 }
-
-}  // namespace
 
 double quantile(std::vector<double> values, double q) {
   std::sort(values.begin(), values.end());

@@ -13,6 +13,11 @@ namespace obscura::apps {
 // q in [0, 1]; values not empty.
 double quantile(std::vector<double> values, double q);
 
+struct Spread {
+  double p10 = 0, median = 0, p90 = 0;
+};
+Spread spreadOf(const std::vector<double>& values);  // not empty
+
 // Pixels that must be the same are not.
 struct Differs : std::runtime_error {
   using std::runtime_error::runtime_error;
@@ -23,10 +28,6 @@ int guarded(const std::function<int()>& body);
 
 // XXH3-128 over the planes of `planes` that the buffer has, one after another, without padding.
 std::string digestOf(const raster::GBuffer& g, const raster::PlaneSet& planes);
-
-struct Spread {
-  double p10 = 0, median = 0, p90 = 0;
-};
 
 struct FrameTimes {
   Spread frame, setup, tiles;  // ms; frame is what a caller waits, for the others see raster::Timings

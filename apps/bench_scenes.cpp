@@ -103,6 +103,27 @@ void addFace(engine::Mesh& mesh, int face, int n) {
     }
 }
 
+// The box's sides and top, or with a flat one a plane.
+void addBox(engine::Mesh& mesh, const glm::dvec3& lo, const glm::dvec3& hi) {
+  const auto quad = [&](const glm::dvec3& corner, const glm::dvec3& along, const glm::dvec3& up) {
+    const uint32_t first = uint32_t(mesh.positions.size());
+    const glm::dvec3 normal = cross(along, up);
+    const double length = std::sqrt(dot(normal, normal));
+    for (const glm::dvec3& p : {corner, corner + along, corner + along + up, corner + up}) {
+      mesh.positions.emplace_back(p);
+      mesh.normals.emplace_back(normal / length);
+    }
+    for (const uint32_t k : {0, 1, 2, 0, 2, 3}) mesh.indices.push_back(first + k);
+  };
+  const glm::dvec3 x(hi.x - lo.x, 0, 0), y(0, hi.y - lo.y, 0), z(0, 0, hi.z - lo.z);
+  quad(lo + y + z, x, -z);
+  if (!(hi.y > lo.y)) return;
+  quad(lo + z, x, y);
+  quad(lo + x, -x, y);
+  quad(lo + x + z, -z, y);
+  quad(lo, z, y);
+}
+
 // A turn about any axis by any angle, both at random, times `scale`.
 glm::dmat4 turned(Random& random, double scale) {
   const glm::dvec3 axis = random.direction();
@@ -179,6 +200,35 @@ BenchScene makeField(uint64_t triangles, bool unique, double aspect) {
   const double extent = 2.2 * side;
   scene.camera = raster::perspective(0.8, aspect, 0.05, 0);
   scene.camera.viewFromWorld = raster::lookAt({0, 0.6 * extent + 0.5, extent + 0.5}, {0, 0, 0}, {0, 1, 0});
+  return scene;
+}
+
+engine::Scene makeGround(int boxes) {
+  engine::Scene scene;
+  scene.materials.resize(2);
+  scene.materials[0].baseColor = {0.7f, 0.6f, 0.5f, 1};
+  scene.materials[1].baseColor = {0.8f, 0.3f, 0.2f, 1};
+  scene.materialNames = {"ground", "boxes"};
+  scene.meshes.resize(2);
+  scene.bounds = {{-40, 0, -40}, {40, 2, 40}, false};
+  addBox(scene.meshes[0], {-40, 0, -40}, {40, 0, 40});
+  Random random(5);
+  for (int k = 0; k < boxes; ++k) {
+    const double x = random.in(-6, 5), z = random.in(-8, 3);
+    addBox(scene.meshes[1], {x, 0, z}, {x + random.in(0.5, 1.5), random.in(0.5, 1.5), z + random.in(0.5, 1.5)});
+  }
+  scene.meshes[1].material = 1;
+  scene.nodeNames = {"ground", "boxes"};
+  for (uint32_t k = 0; k < 2; ++k) {
+    engine::clusterMesh(scene.meshes[k]);
+    if (!scene.meshes[k].indices.empty()) scene.instances.push_back({k, k, glm::dmat4(1)});
+  }
+  engine::SceneCamera camera;
+  camera.name = "across";
+  camera.worldFromView[1] = {0, 0.9375, -0.3479, 0};  // about 20 degrees downwards
+  camera.worldFromView[2] = {0, 0.3479, 0.9375, 0};
+  camera.worldFromView[3] = {0, 4.5, 9, 1};
+  scene.cameras.push_back(camera);
   return scene;
 }
 

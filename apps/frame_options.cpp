@@ -287,7 +287,7 @@ void addExecution(CLI::App& app, FrameOptions& o) {
   addChoice(app, "--tile", {{"16", 16}, {"32", 32}, {"64", 64}}, o.raster.tile, "pixels a side of a tile")
       ->group(group);
   app.add_flag_callback(
-         "--no-skip", [&o] { o.raster.skip = false; }, "cull nothing, rasterize every tile")
+         "--no-skip", [&o] { o.raster.skip = false; }, "cull nothing, rasterize every tile, follow every ray")
       ->group(group);
   app.add_flag("--reference", o.reference,
                "everything by the short scalar code that the fast one is checked against; slow")

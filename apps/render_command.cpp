@@ -269,7 +269,7 @@ int RenderCommand::run() {
   run.write = watch.lap();
 
   progress.finish();
-  if (stats_) report.statistics = &frame.statistics;
+  if (stats_) report.statistics = &frame.statistics, report.transfer = &frame.transferStatistics;
   if (timings_) report.frame = &frame.timings, report.run = &run;
   const bool imageOnStdout =
       std::any_of(outputs->begin(), outputs->end(), [](const Output& o) { return o.path == "-"; });

@@ -13,9 +13,9 @@ namespace {
 
 using Entries = std::vector<std::pair<const char*, std::string>>;
 
-Entries statisticsOf(const raster::Statistics& s) {
+Entries statisticsOf(const raster::Statistics& s, const post::TransferStatistics* t) {
   const auto n = [](uint64_t v) { return std::to_string(v); };
-  return {{"instances", n(s.instances)},
+  Entries e{{"instances", n(s.instances)},
           {"instances_culled", n(s.instancesCulled)},
           {"instances_hidden", n(s.instancesHidden)},
           {"clusters", n(s.clusters)},
@@ -31,6 +31,12 @@ Entries statisticsOf(const raster::Statistics& s) {
           {"triangles_drawn", n(s.drawn)},
           {"tiles", n(s.tiles)},
           {"tiles_empty", n(s.tilesEmpty)}};
+  if (t) {
+    e.emplace_back("transfer_pixels_empty", n(t->empty));
+    e.emplace_back("transfer_pixels_open", n(t->open));
+    e.emplace_back("transfer_pixels_sampled", n(t->sampled));
+  }
+  return e;
 }
 
 Entries timingsOf(const engine::FrameTimings& f, const RunTimings& r) {
@@ -98,7 +104,7 @@ std::string textOf(const Report& report) {
   std::string s;
   for (const std::string& line : report.digests) s += line + "\n";
   Entries entries;
-  if (report.statistics) entries = statisticsOf(*report.statistics);
+  if (report.statistics) entries = statisticsOf(*report.statistics, report.transfer);
   if (report.frame && report.run)
     for (auto& entry : timingsOf(*report.frame, *report.run)) entries.push_back(std::move(entry));
   for (const auto& [name, value] : entries) s += std::string(name) + " " + value + "\n";
@@ -110,7 +116,8 @@ std::string jsonOf(const Report& report) {
   std::string digests;
   for (const std::string& line : report.digests) digests += (digests.empty() ? "" : ", ") + jsonDigest(line);
   if (!report.digests.empty()) parts.emplace_back("digests", "[" + digests + "]");
-  if (report.statistics) parts.emplace_back("statistics", jsonObject(statisticsOf(*report.statistics)));
+  if (report.statistics)
+    parts.emplace_back("statistics", jsonObject(statisticsOf(*report.statistics, report.transfer)));
   if (report.frame && report.run) parts.emplace_back("timings", jsonObject(timingsOf(*report.frame, *report.run)));
   return jsonObject(parts) + "\n";
 }

@@ -26,6 +26,7 @@ std::vector<std::string> digestLines(const engine::Frame& frame, const std::vect
 struct Report {
   std::vector<std::string> digests;  // as from digestLines; empty: not asked for
   const raster::Statistics* statistics = nullptr;
+  const post::TransferStatistics* transfer = nullptr;  // goes with `statistics`
   const engine::FrameTimings* frame = nullptr;  // both or neither
   const RunTimings* run = nullptr;
 };

@@ -90,6 +90,7 @@ struct Renderer::State {
   std::vector<raster::MeshView> meshes;
   std::vector<raster::Instance> instances;
   std::vector<raster::TextureView> textures;
+  post::DepthBounds bounds;
   post::TransferSums sums;
   // Of a frame with border or crop more is drawn than is given: this window, and in it the part that is given.
   raster::Window window, part;
@@ -108,6 +109,9 @@ struct Renderer::State {
   void rasterize(const raster::DrawList& list, const FrameSettings& s, const raster::PlaneSet& planes, const raster::Window& w,
                  raster::GBuffer& out);
   raster::Window windowToDraw(const raster::DrawList& list, const FrameSettings& s, const Needs& needs);
+  post::TransferStatistics transferSums(post::TransferInput& in, int firstRow, int endRow);
+
+  static constexpr size_t kRowsPerTask = 8;
 
   void drawGBuffer(const Scene& scene, const FrameSettings& s, const Needs& needs, Frame& out);
   void drawTransfer(const FrameSettings& s, const Needs& needs, Frame& out);
@@ -117,7 +121,6 @@ struct Renderer::State {
   // Calls body(y0, y1) for bands of the rows first ... end - 1, in parallel.
   template <class Body>
   void forRows(int first, int end, const Body& body) {
-    constexpr size_t kRowsPerTask = 8;
     parallel.forRanges(size_t(end - first), kRowsPerTask,
                        [&](size_t y0, size_t y1, int) { body(first + int(y0), first + int(y1)); });
   }
@@ -170,6 +173,31 @@ void Renderer::State::drawGBuffer(const Scene& scene, const FrameSettings& s, co
   out.imageWidth = s.width, out.imageHeight = s.height;
 }
 
+// Of the rows first ... end - 1.
+post::TransferStatistics Renderer::State::transferSums(post::TransferInput& in, int firstRow, int endRow) {
+  const int w = in.g->width, h = in.g->height;
+  sums = post::makeTransferSums(in, std::move(sums));
+  if (reference) {
+    post::ambientTransferRef(in, firstRow, endRow, sums);
+    return {};
+  }
+  if (settings.skip) {
+    bounds = post::makeDepthBounds(w, h, std::move(bounds));
+    constexpr size_t kCellRowsPerTask = 4;
+    parallel.forRanges(size_t(bounds.c.height()), kCellRowsPerTask, [&](size_t row0, size_t row1, int) {
+      post::boundDepth(*in.g, in.projector, int(row0), int(row1), bounds, target);
+    });
+    in.bounds = &bounds;
+  }
+  std::vector<post::TransferStatistics> found(size_t(parallel.workers()));
+  parallel.forRanges(size_t(endRow - firstRow), kRowsPerTask, [&](size_t y0, size_t y1, int worker) {
+    found[size_t(worker)].add(post::ambientTransfer(in, firstRow + int(y0), firstRow + int(y1), sums, target));
+  });
+  post::TransferStatistics all;
+  for (const post::TransferStatistics& f : found) all.add(f);
+  return all;
+}
+
 // O and W of the part that is given, and the G-buffer cut down to it.
 void Renderer::State::drawTransfer(const FrameSettings& s, const Needs& needs, Frame& out) {
   Stopwatch watch;
@@ -177,11 +205,8 @@ void Renderer::State::drawTransfer(const FrameSettings& s, const Needs& needs, F
   if (needs.sums) {
     post::TransferInput in{&g, post::makeProjector(s.camera, s.width, s.height, window), s.transfer, post::transferSamples(s.transfer)};
     if (!needs.w) in.settings.albedo = post::TransferAlbedo::Own;  // O needs no neighbour's albedo, and there is none
-    sums = post::makeTransferSums(in, std::move(sums));
     const raster::Window filtered = filteredWindow(s);
-    forRows(filtered.y - window.y, filtered.y + filtered.height - window.y, [&](int y0, int y1) {
-      reference ? post::ambientTransferRef(in, y0, y1, sums) : post::ambientTransfer(in, y0, y1, sums, target);
-    });
+    out.transferStatistics = transferSums(in, filtered.y - window.y, filtered.y + filtered.height - window.y);
     out.timings.transfer = watch.lap();
 
     post::Transfer& transfer = more() ? drawnTransfer : out.transfer;
@@ -237,6 +262,7 @@ Result<Done> Renderer::render(const Scene& scene, const FrameSettings& settings,
   s.overNormals = supersampled && needs.w && !normalIsAov;
   s.overSums = supersampled;
   drawn.timings = {};
+  drawn.transferStatistics = {};
   s.drawGBuffer(scene, full, needs, drawn);
   timings.gbuffer = watch.lap();
   s.drawTransfer(full, needs, drawn);
@@ -250,6 +276,7 @@ Result<Done> Renderer::render(const Scene& scene, const FrameSettings& settings,
   if (supersampled) {
     downsampleFrame(drawn, settings, s.parallel, s.reference ? std::nullopt : std::optional(s.target), frame);
     frame.statistics = drawn.statistics;
+    frame.transferStatistics = drawn.transferStatistics;
     for (int c = 0; c < 3; ++c) {  // the next frame needs them where they were
       if (s.overSums && needs.color) s.sums.denominator[c] = std::exchange(drawn.color.rgb[c], {});
       if (s.overNormals) (s.more() ? s.drawn : drawn.g).normal[c] = std::exchange((s.more() ? s.drawnTransfer : drawn.transfer).w[c], {});

@@ -52,6 +52,7 @@ struct Frame {
   post::LinearColor color;
   post::DisplayImage display;
   raster::Statistics statistics;
+  post::TransferStatistics transferStatistics;  // 0 where the transfer was not needed or the reference made it
   FrameTimings timings;
 };
 

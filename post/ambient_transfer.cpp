@@ -1,12 +1,18 @@
 #include "obscura/post/ambient_transfer.h"
 
+#include <algorithm>
 #include <limits>
+#include <vector>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "obscura/post/ambient_transfer.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <hwy/cache_control.h>
+
+#include "obscura/post/open_block-inl.h"
+#include "obscura/post/ray_hits-inl.h"
 #include "obscura/post/sample_sets.h"
 #include "obscura/post/vector-inl.h"
 
@@ -15,126 +21,280 @@ namespace obscura::post {
 namespace HWY_NAMESPACE {
 
 // Depth map as the containment test sees it.
+template <bool kPerspective>
 struct DepthMap {
-  const Projector& projector;
-  const raster::GBuffer& g;
-  VF bias, radius;
+  const float* depth;
+  VF xScale, yScale, xCenter, yCenter, firstX, firstY, lastX, lastY, bias, radius, zNear;
+  VI stride, origin;  // origin: element of the image's pixel (0, 0), were it in the G-buffer, times -1
+  bool negative;      // the G-buffer reaches beyond the image's upper or left edge
+
+  explicit DepthMap(const TransferInput& in) {
+    const DF d;
+    const Projector& p = in.projector;
+    depth = in.g->depth.data();
+    xScale = hn::Set(d, p.xScale), yScale = hn::Set(d, p.yScale);
+    xCenter = hn::Set(d, p.xCenter), yCenter = hn::Set(d, p.yCenter);
+    firstX = hn::Set(d, float(p.xFirst)), firstY = hn::Set(d, float(p.yFirst));
+    lastX = hn::Set(d, float(p.xFirst + p.width - 1)), lastY = hn::Set(d, float(p.yFirst + p.height - 1));
+    origin = hn::Set(DI(), p.yFirst * int32_t(in.g->depth.stride()) + p.xFirst);
+    negative = p.xFirst < 0 || p.yFirst < 0;
+    bias = hn::Set(d, in.settings.bias), radius = hn::Set(d, in.settings.radius), zNear = hn::Set(d, p.zNear);
+    stride = hn::Set(DI(), int32_t(in.g->depth.stride()));
+  }
 
   // Element of the nearest texel, clamped to the G-buffer.
   HWY_INLINE VI texelOf(const V3& p) const {
     const DF d;
-    const DI di;
     VF u = p.x, v = p.y;
-    if (projector.perspective) {
+    if (kPerspective) {
       const VF inverse = hn::Div(hn::Set(d, 1.0f), p.z);
       u = hn::Mul(u, inverse);
       v = hn::Mul(v, inverse);
     }
-    u = hn::Add(hn::Mul(u, hn::Set(d, projector.xScale)), hn::Set(d, projector.xCenter));
-    v = hn::Add(hn::Mul(v, hn::Set(d, projector.yScale)), hn::Set(d, projector.yCenter));
-    // The conversion truncates, which is the floor of what is not negative; NaN becomes the first.
-    auto clamp = [&](VF c, int first, int size) HWY_ATTR {
-      const VF least = hn::Set(d, float(first)), last = hn::Set(d, float(first + size - 1));
-      if (HWY_UNLIKELY(first < 0)) c = hn::Floor(c);
-      c = hn::IfThenElse(hn::Gt(c, least), c, least);
-      return hn::Sub(hn::ConvertTo(di, hn::IfThenElse(hn::Lt(c, last), c, last)), hn::Set(di, first));
-    };
-    const VI column = clamp(u, projector.xFirst, projector.width), row = clamp(v, projector.yFirst, projector.height);
-    return hn::Add(hn::Mul(row, hn::Set(di, int32_t(g.depth.stride()))), column);
+    u = hn::Add(hn::Mul(u, xScale), xCenter);
+    v = hn::Add(hn::Mul(v, yScale), yCenter);
+    if (HWY_UNLIKELY(negative)) u = hn::Floor(u), v = hn::Floor(v);
+    return hn::Sub(hn::Add(hn::Mul(floorOf(v, firstY, lastY), stride), floorOf(u, firstX, lastX)), origin);
   }
 
   // Inner exactly when bias < z - z* < R; the upper bound keeps far foreground objects from casting silhouettes.
-  HWY_INLINE MF inner(const V3& p, VI texel) const {
-    const DF d;
-    const VF behind = hn::Sub(p.z, hn::GatherIndex(d, g.depth.data(), texel));
-    const MF between = hn::And(hn::Gt(behind, bias), hn::Lt(behind, radius));
-    return hn::And(between, hn::Gt(p.z, hn::Set(d, projector.zNear)));
+  HWY_INLINE MF inner(VF z, VI texel) const {
+    const VF behind = hn::Sub(z, hn::GatherIndex(DF(), depth, texel));
+    return hn::And(hn::And(hn::Gt(behind, bias), hn::Lt(behind, radius)), hn::Gt(z, zNear));
+  }
+
+ private:
+  // Truncation is the floor of what is not negative, and of integers. NaN becomes the first.
+  HWY_INLINE static VI floorOf(VF c, VF first, VF last) {
+#if HWY_ARCH_X86  // takes the second operand for NaN
+    const VF from = hn::Max(c, first);
+#else
+    const VF from = hn::IfThenElse(hn::Gt(c, first), c, first);
+#endif
+    return truncated(hn::Min(from, last));
   }
 };
 
-void transferRow(const TransferInput& in, int y, TransferSums& out) {
+// Where the pixels of a vector are, and their frame.
+struct Pixels {
+  V3 position, t, b, n;
+};
+
+// T = normalize(N x (0, 1, 0.01)), B = N x T.
+HWY_INLINE void setFrame(Pixels& at) {
   const DF d;
-  const DI di;
-  const int lanes = int(hn::Lanes(d));
-  const raster::GBuffer& g = *in.g;
-  const Projector& projector = in.projector;
-  const bool neighbour = in.settings.albedo == TransferAlbedo::Neighbour;
-  const int steps = in.settings.steps;
-  const VF all = hn::Set(d, float(in.settings.samples)), zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  const DepthMap map{projector, g, hn::Set(d, in.settings.bias), hn::Set(d, in.settings.radius)};
-
-  // The row's four rotations, repeated so that any vector of them can be loaded. The pattern is that of the whole image.
-  HWY_ALIGN float cosines[32], sines[32];
-  for (int x = 0; x < 32; ++x) {
-    const glm::vec2 r = in.settings.interleave ? rotations()[size_t(((x + projector.xFirst) & 3) + 4 * ((y + projector.yFirst) & 3))] : glm::vec2(1, 0);
-    cosines[x] = r.x;
-    sines[x] = r.y;
-  }
-  const VF yRay = hn::Set(d, (float(y + projector.yFirst) + 0.5f - projector.yCenter) * projector.yInverse);
-
-  for (int x = 0; x < g.width; x += lanes) {
-    const VF z = hn::LoadU(d, g.depth.row(y) + x);
-    const MF seen = hn::And(hn::Lt(z, hn::Set(d, std::numeric_limits<float>::infinity())),
-                            hn::RebindMask(d, hn::Lt(hn::Iota(di, x), hn::Set(di, g.width))));
-    VF numerator = all, denominator[3] = {all, all, all};
-    if (!hn::AllFalse(d, seen)) {
-      VF px = hn::Mul(hn::Sub(hn::Add(hn::ConvertTo(d, hn::Iota(di, x + projector.xFirst)), hn::Set(d, 0.5f)), hn::Set(d, projector.xCenter)),
-                      hn::Set(d, projector.xInverse));
-      VF py = yRay;
-      if (projector.perspective) px = hn::Mul(px, z), py = hn::Mul(py, z);
-
-      // T = normalize(N x (0, 1, 0.01)), B = N x T, turned by the pixel's angle.
-      const V3 n{hn::LoadU(d, g.normal[0].row(y) + x), hn::LoadU(d, g.normal[1].row(y) + x),
-                 hn::Neg(hn::LoadU(d, g.normal[2].row(y) + x))};
-      const VF hundredth = hn::Set(d, 0.01f);
-      V3 t{hn::Sub(hn::Mul(n.y, hundredth), n.z), hn::Neg(hn::Mul(n.x, hundredth)), n.x};
-      const VF square = dot(t, t);
-      const MF direction = hn::Gt(square, hn::Set(d, 1e-12f));
-      const VF length = hn::Sqrt(hn::IfThenElse(direction, square, one));
-      t = {hn::IfThenElse(direction, hn::Div(t.x, length), one), hn::IfThenElseZero(direction, hn::Div(t.y, length)),
-           hn::IfThenElseZero(direction, hn::Div(t.z, length))};
-      const V3 b = cross(n, t);
-      const VF c = hn::LoadU(d, cosines + (x & 3)), s = hn::LoadU(d, sines + (x & 3));
-      const V3 tTurned{hn::Add(hn::Mul(c, t.x), hn::Mul(s, b.x)), hn::Add(hn::Mul(c, t.y), hn::Mul(s, b.y)),
-                       hn::Add(hn::Mul(c, t.z), hn::Mul(s, b.z))};
-      const V3 bTurned{hn::Sub(hn::Mul(s, t.x), hn::Mul(c, b.x)), hn::Sub(hn::Mul(s, t.y), hn::Mul(c, b.y)),
-                       hn::Sub(hn::Mul(s, t.z), hn::Mul(c, b.z))};
-
-      numerator = zero;
-      for (const glm::vec3& offset : in.offsets) {
-        MF hit = hn::MaskFromVec(zero);
-        VI hitTexel = hn::Zero(di);
-        for (int k = 1; k <= steps; ++k) {
-          const float part = float(k) / float(steps);
-          const VF X = hn::Set(d, offset.x * part), Y = hn::Set(d, offset.y * part), Z = hn::Set(d, offset.z * part);
-          auto shifted = [&](VF p, VF tc, VF bc, VF nc) HWY_ATTR {
-            return hn::Add(p, hn::Add(hn::Add(hn::Mul(X, tc), hn::Mul(Y, bc)), hn::Mul(Z, nc)));
-          };
-          const V3 p{shifted(px, tTurned.x, bTurned.x, n.x), shifted(py, tTurned.y, bTurned.y, n.y),
-                     shifted(z, tTurned.z, bTurned.z, n.z)};
-          const VI texel = map.texelOf(p);
-          const MF first = hn::AndNot(hit, map.inner(p, texel));
-          hitTexel = hn::IfThenElse(hn::RebindMask(di, first), texel, hitTexel);
-          hit = hn::Or(hit, first);
-        }
-        numerator = hn::Add(numerator, hn::IfThenZeroElse(hit, one));
-        if (neighbour && !hn::AllFalse(d, hn::And(hit, seen)))
-          for (int ch = 0; ch < 3; ++ch) {
-            const VF a = hn::GatherIndex(d, g.albedo[ch].data(), hitTexel);
-            denominator[ch] = hn::Sub(denominator[ch], hn::IfThenElseZero(hit, a));
-          }
-      }
-      numerator = hn::IfThenElse(seen, numerator, all);
-      for (VF& v : denominator) v = hn::IfThenElse(seen, v, all);
-    }
-    hn::StoreU(numerator, d, out.numerator.row(y) + x);
-    if (neighbour)
-      for (int ch = 0; ch < 3; ++ch) hn::StoreU(denominator[ch], d, out.denominator[ch].row(y) + x);
-  }
+  const VF one = hn::Set(d, 1.0f), hundredth = hn::Set(d, 0.01f);
+  const V3& n = at.n;
+  const V3 t{hn::Sub(hn::Mul(n.y, hundredth), n.z), hn::Neg(hn::Mul(n.x, hundredth)), n.x};
+  const VF square = dot(t, t);
+  const MF direction = hn::Gt(square, hn::Set(d, 1e-12f));
+  const VF length = hn::Sqrt(hn::IfThenElse(direction, square, one));
+  at.t = {hn::IfThenElse(direction, hn::Div(t.x, length), one), hn::IfThenElseZero(direction, hn::Div(t.y, length)),
+          hn::IfThenElseZero(direction, hn::Div(t.z, length))};
+  at.b = cross(n, at.t);
 }
 
-void AmbientTransfer(const TransferInput& in, int y0, int y1, TransferSums& out) {
-  for (int y = y0; y < y1; ++y) transferRow(in, y, out);
+// Turns T and B by the pixel's angle.
+HWY_INLINE void turnFrame(Pixels& at, VF c, VF s) {
+  const V3 t = at.t, b = at.b;
+  at.t = {hn::Add(hn::Mul(c, t.x), hn::Mul(s, b.x)), hn::Add(hn::Mul(c, t.y), hn::Mul(s, b.y)),
+          hn::Add(hn::Mul(c, t.z), hn::Mul(s, b.z))};
+  at.b = {hn::Sub(hn::Mul(s, t.x), hn::Mul(c, b.x)), hn::Sub(hn::Mul(s, t.y), hn::Mul(c, b.y)),
+          hn::Sub(hn::Mul(s, t.z), hn::Mul(c, b.z))};
+}
+
+// Rows are worked on in segments of 16 pixels, so that what is skipped does not depend on the vector's length.
+constexpr int kSegment = 16;
+static_assert(DepthBounds::kCellWidth == kSegment, "a segment lies in one block");
+
+template <bool kPerspective, bool kOneStep, bool kNeighbour>
+class Kernel {
+ public:
+  Kernel(const TransferInput& in, TransferSums& out)
+      : in_(in), g_(*in.g), out_(out), map_(in), points_(pointsOf(in)), reach_(points_) {}
+
+  TransferStatistics rows(int y0, int y1) {
+    if (in_.bounds) blocks_.resize(size_t(in_.bounds->c.width()));
+    for (int y = y0; y < y1; ++y) {
+      if (in_.bounds && (y == y0 || y % DepthBounds::kCellHeight == 0))
+        for (size_t column = 0; column < blocks_.size(); ++column)
+          blocks_[column] = openBlock<kPerspective>(in_, reach_, int(column), y / DepthBounds::kCellHeight);
+      startRow(y);
+      for (int x = 0; x < g_.width; x += kSegment) segment(x, y);
+      subtractPending(y);
+    }
+    return statistics_;
+  }
+
+ private:
+  static std::vector<glm::vec3> pointsOf(const TransferInput& in) {
+    std::vector<glm::vec3> points;
+    for (const glm::vec3& offset : in.offsets)
+      for (int k = 1; k <= in.settings.steps; ++k) points.push_back(offset * (float(k) / float(in.settings.steps)));
+    return points;
+  }
+
+  // The pattern is that of the whole image.
+  void startRow(int y) {
+    const Projector& p = in_.projector;
+    for (int x = 0; x < kSegment; ++x) {
+      const glm::vec2 r = in_.settings.interleave ? rotations()[size_t(((x + p.xFirst) & 3) + 4 * ((y + p.yFirst) & 3))] : glm::vec2(1, 0);
+      cosines_[x] = r.x;
+      sines_[x] = r.y;
+    }
+    yRay_ = hn::Set(DF(), (float(y + p.yFirst) + 0.5f - p.yCenter) * p.yInverse);
+  }
+
+  HWY_INLINE void segment(int x, int y) {
+    const DF d;
+    constexpr int kLanes = int(hn::MaxLanes(DF())), kVectors = kSegment / kLanes;
+    const VF all = hn::Set(d, float(in_.settings.samples));
+    const VF infinity = hn::Set(d, std::numeric_limits<float>::infinity());
+    float* numerator = out_.numerator.row(y) + x;
+    MF seen[kVectors];
+    uint64_t seenCount = 0;
+    for (int v = 0; v < kVectors; ++v) {
+      const VI column = hn::Iota(DI(), x + v * kLanes);
+      seen[v] = hn::And(hn::Lt(hn::LoadU(d, g_.depth.row(y) + x + v * kLanes), infinity),
+                        hn::RebindMask(d, hn::Lt(column, hn::Set(DI(), g_.width))));
+      seenCount += hn::CountTrue(d, seen[v]);
+      hn::StoreU(all, d, numerator + v * kLanes);
+      for (int c = 0; kNeighbour && c < 3; ++c) hn::StoreU(all, d, out_.denominator[c].row(y) + x + v * kLanes);
+    }
+    statistics_.empty += uint64_t(std::min(kSegment, g_.width - x)) - seenCount;
+    uint8_t& open = out_.open.at(x / kSegment, y);
+    open = 1;
+    if (seenCount == 0) return;
+
+    fetchAhead(x, y);
+    Pixels pixels[kVectors];
+    for (int v = 0; v < kVectors; ++v) {
+      // A ray from infinity meets nothing: z - z* < R never holds.
+      const VF z = hn::IfThenElse(seen[v], hn::LoadU(d, g_.depth.row(y) + x + v * kLanes), infinity);
+      place(pixels[v], x + v * kLanes, y, z);
+      setFrame(pixels[v]);
+    }
+    if (in_.bounds) {
+      const OpenBlock& block = blocks_[size_t(x / kSegment)];
+      bool known = block.known;
+      for (int v = 0; v < kVectors && known; ++v) {
+        const Pixels& at = pixels[v];
+        const MF outer =
+            knownOpen<kPerspective>(block, reach_, at.position, at.t, at.b, at.n, in_.settings.bias);
+        known = hn::AllTrue(d, hn::Or(hn::Not(seen[v]), outer));
+      }
+      if (known) {
+        statistics_.open += seenCount;
+        return;
+      }
+    }
+    statistics_.sampled += seenCount;
+    for (int v = 0; v < kVectors; ++v) {
+      turnFrame(pixels[v], hn::LoadU(d, cosines_ + v * kLanes), hn::LoadU(d, sines_ + v * kLanes));
+      const VF outer = outerRays(pixels[v]);
+      open &= uint8_t(hn::AllTrue(d, hn::Eq(outer, all)));
+      hn::StoreU(outer, d, numerator + v * kLanes);
+      if (kNeighbour) {
+        pending_[pendingCount_++] = x + v * kLanes;
+        if (pendingCount_ == pendingMost_) subtractPending(y);
+      }
+    }
+  }
+
+  // The gathers' lines come from far down, and no hardware sees that they advance by a row at a time.
+  HWY_INLINE void fetchAhead(int x, int y) const {
+    constexpr int kRows = 64;
+    const int row = std::min(y + kRows, g_.height - 1);
+    hwy::Prefetch(g_.depth.row(row) + x);
+    for (int c = 0; kNeighbour && c < 3; ++c) hwy::Prefetch(g_.albedo[c].row(row) + x);
+    const int next = std::min(y + 1, g_.height - 1);
+    for (int c = 0; c < 3; ++c) hwy::Prefetch(g_.normal[c].row(next) + x);
+  }
+
+  HWY_INLINE void place(Pixels& at, int x, int y, VF z) const {
+    const DF d;
+    VF px = hn::Add(hn::ConvertTo(d, hn::Iota(DI(), x + in_.projector.xFirst)), hn::Set(d, 0.5f)), py = yRay_;
+    px = hn::Mul(hn::Sub(px, hn::Set(d, in_.projector.xCenter)), hn::Set(d, in_.projector.xInverse));
+    if (kPerspective) px = hn::Mul(px, z), py = hn::Mul(py, z);
+    at.position = {px, py, z};
+    at.n = {hn::LoadU(d, g_.normal[0].row(y) + x), hn::LoadU(d, g_.normal[1].row(y) + x),
+            hn::Neg(hn::LoadU(d, g_.normal[2].row(y) + x))};
+  }
+
+  // Counts the rays that stay outside; with kNeighbour also notes what the others meet.
+  HWY_INLINE VF outerRays(const Pixels& at) {
+    const DF d;
+    const DI di;
+    const VF one = hn::Set(d, 1.0f);
+    const size_t samples = in_.offsets.size(), steps = kOneStep ? 1 : size_t(in_.settings.steps);
+    const size_t firstRay = size_t(pendingCount_) * samples * Hits::kStride;
+    const glm::vec3* point = points_.data();
+    VF outer = hn::Zero(d);
+    for (size_t i = 0; i < samples; ++i) {
+      MF hit = hn::MaskFromVec(hn::Zero(d));
+      VI met = hn::Zero(di);
+      for (size_t k = 0; k < steps; ++k, ++point) {
+        const VF X = hn::Set(d, point->x), Y = hn::Set(d, point->y), Z = hn::Set(d, point->z);
+        auto shifted = [&](VF p, VF t, VF b, VF n) HWY_ATTR {
+          return hn::Add(p, hn::Add(hn::Add(hn::Mul(X, t), hn::Mul(Y, b)), hn::Mul(Z, n)));
+        };
+        const V3 p{shifted(at.position.x, at.t.x, at.b.x, at.n.x), shifted(at.position.y, at.t.y, at.b.y, at.n.y),
+                   shifted(at.position.z, at.t.z, at.b.z, at.n.z)};
+        const VI texel = map_.texelOf(p);
+        const MF inner = map_.inner(p.z, texel);
+        met = kOneStep ? texel : hn::IfThenElse(hn::RebindMask(di, hn::AndNot(hit, inner)), texel, met);
+        hit = kOneStep ? inner : hn::Or(hit, inner);
+      }
+      outer = hn::IfThenElse(hit, outer, hn::Add(outer, one));
+      if (kNeighbour) hits_.set(firstRay + i * Hits::kStride, hit, met);
+    }
+    return outer;
+  }
+
+  void subtractPending(int y) {
+    const size_t rays = in_.offsets.size() * Hits::kStride;
+    for (int v = 0; v < pendingCount_; ++v) {
+      float* denominator[3];
+      for (int c = 0; c < 3; ++c) denominator[c] = out_.denominator[c].row(y) + pending_[v];
+      hits_.subtract(size_t(v) * rays, rays, g_, denominator);
+    }
+    pendingCount_ = 0;
+  }
+
+  const TransferInput& in_;
+  const raster::GBuffer& g_;
+  TransferSums& out_;
+  const DepthMap<kPerspective> map_;
+  const std::vector<glm::vec3> points_;  // in the frame (T', B', N): those of a ray one after the other
+  const Reach reach_;
+  std::vector<OpenBlock> blocks_;  // of the row of cells
+  TransferStatistics statistics_;
+  HWY_ALIGN float cosines_[kSegment], sines_[kSegment];  // the row's rotations
+  VF yRay_;
+  static constexpr int kPendingMost = 16;
+  const int pendingMost_ = std::min(kPendingMost, int(2 * kMaxSamples / std::max<size_t>(in_.offsets.size(), 1)));
+  int pendingCount_ = 0, pending_[kPendingMost];  // vectors whose hits are noted: their x
+  Hits hits_;
+};
+
+template <bool kPerspective, bool kOneStep, bool kNeighbour>
+TransferStatistics transferRows(const TransferInput& in, int y0, int y1, TransferSums& out) {
+  Kernel<kPerspective, kOneStep, kNeighbour> kernel(in, out);
+  return kernel.rows(y0, y1);
+}
+
+template <bool kPerspective, bool kOneStep>
+TransferStatistics transferRows(const TransferInput& in, int y0, int y1, TransferSums& out) {
+  const bool neighbour = in.settings.albedo == TransferAlbedo::Neighbour;
+  if (neighbour) return transferRows<kPerspective, kOneStep, true>(in, y0, y1, out);
+  return transferRows<kPerspective, kOneStep, false>(in, y0, y1, out);
+}
+
+TransferStatistics AmbientTransfer(const TransferInput& in, int y0, int y1, TransferSums& out) {
+  const bool oneStep = in.settings.steps == 1;
+  if (in.projector.perspective)
+    return oneStep ? transferRows<true, true>(in, y0, y1, out) : transferRows<true, false>(in, y0, y1, out);
+  return oneStep ? transferRows<false, true>(in, y0, y1, out) : transferRows<false, false>(in, y0, y1, out);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -149,14 +309,15 @@ namespace obscura::post {
 
 HWY_EXPORT(AmbientTransfer);
 
-void ambientTransfer(const TransferInput& in, int y0, int y1, TransferSums& out, raster::Target target) {
+TransferStatistics ambientTransfer(const TransferInput& in, int y0, int y1, TransferSums& out, raster::Target target) {
   const raster::FloatEnvironment environment;
-  OBSCURA_DISPATCH(AmbientTransfer, target)(in, y0, y1, out);
+  return OBSCURA_DISPATCH(AmbientTransfer, target)(in, y0, y1, out);
 }
 
 TransferSums makeTransferSums(const TransferInput& in, TransferSums used) {
   const bool denominators = in.settings.albedo == TransferAlbedo::Neighbour;
   used.numerator.resize(in.g->width, in.g->height);
+  used.open.resize((in.g->width + 15) / 16, in.g->height);
   for (auto& plane : used.denominator) plane.resize(denominators ? in.g->width : 0, denominators ? in.g->height : 0);
   return used;
 }

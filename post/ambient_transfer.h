@@ -2,10 +2,12 @@
 // Out: per pixel the numerator and denominator of the ambient transfer (long paper, equation 9 and its shader).
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include <glm/vec3.hpp>
 
+#include "obscura/post/depth_bounds.h"
 #include "obscura/post/projector.h"
 #include "obscura/post/settings.h"
 #include "obscura/raster/gbuffer.h"
@@ -18,6 +20,16 @@ namespace obscura::post {
 struct TransferSums {
   raster::Plane<float> numerator;       // test rays that stay outside: 0 ... n, a whole number; n where empty
   raster::Plane<float> denominator[3];  // n minus the occluders' albedos, per channel
+  raster::Plane<uint8_t> open;          // one element per 16 pixels of a row: 1 where all numerators are n
+};
+
+// Every pixel is one of these. Which, depends neither on the instruction set nor on how the rows are divided.
+struct TransferStatistics {
+  uint64_t empty = 0;    // nothing is seen there
+  uint64_t open = 0;     // known from the bounds of the depth
+  uint64_t sampled = 0;
+
+  void add(const TransferStatistics& o) { empty += o.empty, open += o.open, sampled += o.sampled; }
 };
 
 struct TransferInput {
@@ -25,6 +37,8 @@ struct TransferInput {
   Projector projector;
   AmbientSettings settings;
   std::vector<glm::vec3> offsets;  // transferSamples(settings)
+  // Of this depth and projector, whole: where they show that every ray stays outside, none is followed. Null: all are.
+  const DepthBounds* bounds = nullptr;
 };
 
 // Allocates what the settings need. `used`, here and in the other make functions of the post process: planes of an earlier
@@ -32,7 +46,7 @@ struct TransferInput {
 TransferSums makeTransferSums(const TransferInput& in, TransferSums used = {});
 
 // Rows y0 ... y1 - 1 of `out`; reads the depth map everywhere.
-void ambientTransfer(const TransferInput& in, int y0, int y1, TransferSums& out, raster::Target target);
-void ambientTransferRef(const TransferInput& in, int y0, int y1, TransferSums& out);  // the scalar twin
+TransferStatistics ambientTransfer(const TransferInput& in, int y0, int y1, TransferSums& out, raster::Target target);
+void ambientTransferRef(const TransferInput& in, int y0, int y1, TransferSums& out);  // the scalar twin: follows all rays
 
 }  // namespace obscura::post

@@ -78,7 +78,11 @@ void shade(const TransferInput& in, int x, int y, TransferSums& out) {
 void ambientTransferRef(const TransferInput& in, int y0, int y1, TransferSums& out) {
   const raster::FloatEnvironment environment;
   for (int y = y0; y < y1; ++y)
-    for (int x = 0; x < in.g->width; ++x) shade(in, x, y, out);
+    for (int x = 0; x < in.g->width; ++x) {
+      shade(in, x, y, out);
+      const uint8_t open = out.numerator.at(x, y) == float(in.settings.samples);
+      out.open.at(x / 16, y) = x % 16 == 0 ? open : out.open.at(x / 16, y) & open;
+    }
 }
 
 }  // namespace obscura::post

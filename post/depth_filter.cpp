@@ -8,6 +8,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <hwy/cache_control.h>
+
 #include "obscura/post/vector-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -19,33 +21,65 @@ struct Sums {
   VF numerator, denominator[3], count;
 };
 
+// Where the rows of a window are read; indices 0 ... 3 stand for y - 2 ... y + 1, clamped at the image's border.
+struct Window {
+  const float *depth[4], *numerator[4], *denominator[3][4];
+  const uint8_t* open[4];
+
+  // All rays of all windows of the 16 pixels from 16 segment on stay outside: O and W are 1 whichever pixels count.
+  HWY_INLINE bool isOpen(int segment, int segments, bool filter) const {
+    if (!filter) return open[2][segment];
+    const int before = std::max(segment - 1, 0), after = std::min(segment + 1, segments - 1);
+    int all = 1;
+    for (int j = 0; j < 4; ++j) all &= open[j][before] & open[j][segment] & open[j][after];
+    return all;
+  }
+};
+
 // kChannels of the denominator are summed: 3 for the neighbours' W, else 0. kInside: no lane's window leaves the row.
+// The order of the sum is by rows, then columns.
 template <int kChannels, bool kInside>
-HWY_INLINE Sums sumWindow(const TransferInput& in, const TransferSums& sums, int x, int y) {
+HWY_INLINE Sums sumWindow(const Window& window, int width, int x, VF threshold) {
   const DF d;
   const DI di;
-  const raster::GBuffer& g = *in.g;
-  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f), threshold = hn::Set(d, in.settings.filterThreshold);
-  const VF z = hn::LoadU(d, g.depth.row(y) + x);
+  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+  const VF z = hn::LoadU(d, window.depth[2] + x);
   Sums s{zero, {zero, zero, zero}, zero};
-  for (int j = -2; j <= 1; ++j) {
-    const int row = std::clamp(y + j, 0, g.height - 1);
-    for (int i = -2; i <= 1; ++i) {
-      VI column = hn::Zero(di);
-      if (!kInside) column = hn::Min(hn::Max(hn::Iota(di, x + i), hn::Zero(di)), hn::Set(di, g.width - 1));
-      auto read = [&](const raster::Plane<float>& p) HWY_ATTR {
-        if (kInside) return hn::LoadU(d, p.row(row) + x + i);
-        return hn::GatherIndex(d, p.row(row), column);
+  VI columns[4];
+  for (int i = 0; i < 4; ++i)
+    columns[i] = hn::Min(hn::Max(hn::Iota(di, x + i - 2), hn::Zero(di)), hn::Set(di, width - 1));
+#if HWY_COMPILER_GCC_ACTUAL  // clang unrolls these by itself
+#pragma GCC unroll 4
+#endif
+  for (int j = 0; j < 4; ++j)
+#if HWY_COMPILER_GCC_ACTUAL
+#pragma GCC unroll 4
+#endif
+    for (int i = 0; i < 4; ++i) {
+      auto read = [&](const float* row) HWY_ATTR {
+        return kInside ? hn::LoadU(d, row + x + i - 2) : hn::GatherIndex(d, row, columns[i]);
       };
-      MF counts = hn::Lt(hn::Abs(hn::Sub(z, read(g.depth))), threshold);
-      if (i == 0 && j == 0) counts = hn::Eq(zero, zero);
-      s.count = hn::Add(s.count, hn::IfThenElseZero(counts, one));
-      s.numerator = hn::Add(s.numerator, hn::IfThenElseZero(counts, read(sums.numerator)));
-      for (int c = 0; c < kChannels; ++c)
-        s.denominator[c] = hn::Add(s.denominator[c], hn::IfThenElseZero(counts, read(sums.denominator[c])));
+      MF counts = hn::Lt(hn::Abs(hn::Sub(z, read(window.depth[j]))), threshold);
+      if (i == 2 && j == 2) counts = hn::Eq(zero, zero);  // the pixel itself
+      // Adding nothing and adding 0 are the same here (no sum is ever -0); g++ makes one masked addition of the former.
+      auto add = [&](VF& sum, VF v) HWY_ATTR { sum = hn::IfThenElse(counts, hn::Add(sum, v), sum); };
+      add(s.count, one);
+      add(s.numerator, read(window.numerator[j]));
+      // One by one: g++ would keep a loop, and with it the sums in memory (two thirds more time).
+      if (kChannels > 0) add(s.denominator[0], read(window.denominator[0][j]));
+      if (kChannels > 1) add(s.denominator[1], read(window.denominator[1][j]));
+      if (kChannels > 2) add(s.denominator[2], read(window.denominator[2][j]));
     }
-  }
   return s;
+}
+
+// The row after the next, whose first use would wait: there are too many planes for the hardware to keep ahead of.
+template <int kChannels>
+HWY_INLINE void fetchAhead(const raster::GBuffer& g, const TransferSums& sums, int x, int y) {
+  const int row = std::min(y + 3, g.height - 1);
+  hwy::Prefetch(g.depth.row(row) + x);
+  hwy::Prefetch(sums.numerator.row(row) + x);
+  for (int c = 0; c < kChannels; ++c) hwy::Prefetch(sums.denominator[c].row(row) + x);
 }
 
 template <int kChannels>
@@ -53,35 +87,52 @@ void filterRow(const TransferInput& in, const TransferSums& sums, int y, Transfe
   const DF d;
   const raster::GBuffer& g = *in.g;
   const VF one = hn::Set(d, 1.0f), rays = hn::Set(d, float(in.settings.samples));
-  const bool w = !out.w[0].empty();
+  const VF threshold = hn::Set(d, in.settings.filterThreshold);
+  const VF infinity = hn::Set(d, std::numeric_limits<float>::infinity());
+  Window window;
+  for (int j = 0; j < 4; ++j) {
+    const int row = std::clamp(y + j - 2, 0, g.height - 1);
+    window.depth[j] = g.depth.row(row);
+    window.numerator[j] = sums.numerator.row(row);
+    window.open[j] = sums.open.row(row);
+    for (int c = 0; c < kChannels; ++c) window.denominator[c][j] = sums.denominator[c].row(row);
+  }
+  float* obscurance = out.obscurance.empty() ? nullptr : out.obscurance.row(y);
+  float* w[3] = {};
+  const float* albedo[3] = {};
+  for (int c = 0; c < 3 && !out.w[0].empty(); ++c) {
+    w[c] = out.w[c].row(y);
+    if (kChannels == 0) albedo[c] = g.albedo[c].row(y);
+  }
+  bool open = false;
   for (int x = 0; x < g.width; x += int(hn::Lanes(d))) {
-    const MF seen = hn::Lt(hn::LoadU(d, g.depth.row(y) + x), hn::Set(d, std::numeric_limits<float>::infinity()));
-    if (hn::AllFalse(d, seen)) {
-      if (!out.obscurance.empty()) hn::StoreU(one, d, out.obscurance.row(y) + x);
-      for (int c = 0; w && c < 3; ++c) hn::StoreU(one, d, out.w[c].row(y) + x);
+    if (x % 16 == 0) open = window.isOpen(x / 16, sums.open.width(), in.settings.filter);
+    const MF seen = hn::Lt(hn::LoadU(d, window.depth[2] + x), infinity);
+    if (open || hn::AllFalse(d, seen)) {
+      if (obscurance) hn::StoreU(one, d, obscurance + x);
+      for (int c = 0; w[0] && c < 3; ++c) hn::StoreU(one, d, w[c] + x);
       continue;
     }
     Sums s;
     if (in.settings.filter) {
+      fetchAhead<kChannels>(g, sums, x, y);
       const bool inside = x >= 2 && x + int(hn::Lanes(d)) < g.width;
-      s = inside ? sumWindow<kChannels, true>(in, sums, x, y) : sumWindow<kChannels, false>(in, sums, x, y);
+      s = inside ? sumWindow<kChannels, true>(window, g.width, x, threshold)
+                 : sumWindow<kChannels, false>(window, g.width, x, threshold);
     } else {
-      s.numerator = hn::LoadU(d, sums.numerator.row(y) + x);
+      s.numerator = hn::LoadU(d, window.numerator[2] + x);
       s.count = one;
-      for (int c = 0; c < kChannels; ++c) s.denominator[c] = hn::LoadU(d, sums.denominator[c].row(y) + x);
+      for (int c = 0; c < kChannels; ++c) s.denominator[c] = hn::LoadU(d, window.denominator[c][2] + x);
     }
     const VF total = hn::Mul(rays, s.count);
-    if (!out.obscurance.empty())
-      hn::StoreU(hn::IfThenElse(seen, hn::Div(s.numerator, total), one), d, out.obscurance.row(y) + x);
-    for (int c = 0; w && c < 3; ++c) {
+    if (obscurance) hn::StoreU(hn::IfThenElse(seen, hn::Div(s.numerator, total), one), d, obscurance + x);
+    for (int c = 0; w[0] && c < 3; ++c) {
       VF denominator = s.denominator[c];
-      if (kChannels == 0) {
-        const VF albedo = hn::LoadU(d, g.albedo[c].row(y) + x);
-        denominator = hn::Sub(total, hn::Mul(albedo, hn::Sub(total, s.numerator)));
-      }
-      const MF open = hn::Not(hn::Gt(denominator, s.numerator));
-      const VF quotient = hn::Div(s.numerator, hn::IfThenElse(open, one, denominator));
-      hn::StoreU(hn::IfThenElse(hn::AndNot(open, seen), quotient, one), d, out.w[c].row(y) + x);
+      if (kChannels == 0)
+        denominator = hn::Sub(total, hn::Mul(hn::LoadU(d, albedo[c] + x), hn::Sub(total, s.numerator)));
+      const MF whole = hn::Not(hn::Gt(denominator, s.numerator));
+      const VF quotient = hn::Div(s.numerator, hn::IfThenElse(whole, one, denominator));
+      hn::StoreU(hn::IfThenElse(hn::AndNot(whole, seen), quotient, one), d, w[c] + x);
     }
   }
 }

@@ -23,6 +23,19 @@ struct V3 {
   VF x, y, z;
 };
 
+// Truncation of 0 <= v < 2^31, without what ConvertTo adds on x86 for values beyond.
+HWY_INLINE VI truncated(VF v) {
+#if HWY_TARGET == HWY_AVX3
+  return VI{_mm512_cvttps_epi32(v.raw)};
+#elif HWY_TARGET == HWY_AVX2
+  return VI{_mm256_cvttps_epi32(v.raw)};
+#elif HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_SSSE3
+  return VI{_mm_cvttps_epi32(v.raw)};
+#else
+  return hn::ConvertTo(DI(), v);
+#endif
+}
+
 HWY_INLINE VF dot(const V3& a, const V3& b) {
   return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
 }

@@ -210,6 +210,33 @@ TEST_CASE("bench: scaling sweeps triangles, pixels and threads, and one scene ha
   CHECK(svg.find("nan") == svg.npos);
 }
 
+TEST_CASE("bench: transfer has a line for each number of samples with and without interleaving") {
+  const Json out = printed({"transfer", "--size", "200x150", "--frames", "2", "--samples", "1,3", "--threads", "2"});
+  CHECK(out["size"] == Json({200, 150}));
+  REQUIRE(out["cells"].size() == 4);
+  std::set<std::string> digests;
+  for (size_t k = 0; k < 4; ++k) {
+    const Json& cell = out["cells"][k];
+    CHECK(cell["samples"] == (k < 2 ? 1 : 3));
+    CHECK(cell["interleave"] == (k % 2 == 1));
+    for (const char* stage : {"transfer_ms", "filter_ms"}) {
+      CHECK(cell[stage] > 0);
+      CHECK(cell[std::string(stage) + "_p10"] <= cell[stage]);
+      CHECK(cell[stage] <= cell[std::string(stage) + "_p90"]);
+    }
+    const int empty = cell["pixels_empty"], open = cell["pixels_open"], sampled = cell["pixels_sampled"];
+    CHECK(empty + open + sampled == 200 * 150);
+    CHECK(open > 200 * 150 / 5);
+    digests.insert(cell["digest"]);
+  }
+  CHECK(digests.size() == 4);
+  const Finished table = runProgram({"transfer", "--size", "40x30", "--frames", "1"});
+  CHECK(table.code == 0);
+  CHECK(count(table.out, " yes ") == 4);
+  CHECK(count(table.out, " no ") == 4);
+  CHECK(runProgram({"transfer", "/nonexistent.glb"}).code == 3);
+}
+
 TEST_CASE("bench: nonsense ends with exit code 2 and a plot that cannot be written with 4") {
   using Words = std::vector<std::string>;
   for (const Words& words :
@@ -218,7 +245,8 @@ TEST_CASE("bench: nonsense ends with exit code 2 and a plot that cannot be writt
         Words{"raster", "--projection", "fish"}, Words{"scaling", "--most-triangles", "12"},
         Words{"scaling", "--most-pixels", "100"}, Words{"scaling", "--most-pixels", "16385x1"},
         Words{"scaling", "--size", "4x4x4"}, Words{"scaling", "--plot", "plot.jpg"},
-        Words{"scaling", "--seconds", "0"}}) {
+        Words{"scaling", "--seconds", "0"}, Words{"transfer", "--samples", "0"},
+        Words{"transfer", "--interleave", "on"}}) {
     const Finished f = runProgram(words);
     INFO((words.empty() ? "" : words.back()));
     CHECK(f.code == 2);

@@ -320,6 +320,14 @@ TEST_CASE("cli: the report has plain names, and --json makes one object of it") 
   REQUIRE(json["digests"][0]["name"] == "color");
   REQUIRE(json["digests"][0]["hash"].get<std::string>().size() == 32);
   REQUIRE(json["statistics"]["triangles"] == 8);
+  const auto pixels = [&](const char* kind) {
+    return json["statistics"][std::string("transfer_pixels_") + kind].get<int>();
+  };
+  const std::string size = json["digests"][0]["size"];
+  const int width = std::stoi(size), height = std::stoi(size.substr(size.find('x') + 1));
+  REQUIRE(pixels("empty") + pixels("open") + pixels("sampled") == width * height);
+  const nlohmann::json unskipped = nlohmann::json::parse(w.render({"--json", "--stats", "--no-skip"}).out);
+  REQUIRE(unskipped["statistics"]["transfer_pixels_open"] == 0);
   REQUIRE(json["timings"]["frame_ms"] > 0);
   REQUIRE(!nlohmann::json::parse(w.render({"--json", "--stats"}).out).contains("timings"));
 }

@@ -11,6 +11,8 @@ namespace obscura::tests {
 
 struct PostFrame {
   raster::GBuffer g;
+  post::DepthBounds bounds;
+  post::TransferStatistics statistics;
   post::TransferInput in;
   post::TransferSums sums;
   post::Transfer transfer;
@@ -22,9 +24,10 @@ inline post::TransferInput transferInput(const raster::GBuffer& g, const raster:
   return {&g, post::makeProjector(camera, g.width, g.height), settings, post::transferSamples(settings)};
 }
 
-// The passes on frame.g; `target` empty: by the scalar twins.
+// The passes on frame.g; `target` empty: by the scalar twins. skip: what is known to be open is not sampled.
 inline void runPost(PostFrame& f, const raster::Camera& camera, const post::AmbientSettings& settings,
-                    std::optional<raster::Target> target, post::Occlusion occlusion = post::Occlusion::Transfer) {
+                    std::optional<raster::Target> target, post::Occlusion occlusion = post::Occlusion::Transfer,
+                    bool skip = true) {
   const int h = f.g.height;
   const post::DisplayTable table;
   f.in = transferInput(f.g, camera, settings);
@@ -34,7 +37,10 @@ inline void runPost(PostFrame& f, const raster::Camera& camera, const post::Ambi
   f.display = post::makeDisplayImage(f.g.width, h);
   const post::LightInput light{&f.g, &f.transfer, occlusion, glm::vec3(0.9f, 1, 1.3f), glm::vec3(0.1f, 0.2f, 0.3f)};
   if (target) {
-    post::ambientTransfer(f.in, 0, h, f.sums, *target);
+    f.bounds = post::makeDepthBounds(f.g.width, h);
+    post::boundDepth(f.g, f.in.projector, 0, f.bounds.c.height(), f.bounds, *target);
+    if (skip) f.in.bounds = &f.bounds;
+    f.statistics = post::ambientTransfer(f.in, 0, h, f.sums, *target);
     post::depthFilter(f.in, f.sums, 0, h, f.transfer, *target);
     post::light(light, 0, h, f.color, *target);
     post::display(f.color, table, 0, h, f.display, *target);

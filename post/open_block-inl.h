@@ -1,0 +1,160 @@
+// Per target: which pixels have only rays that stay outside, as the bounds of the depth around them show.
+//
+// Let 1/z* <= a u + b v + c hold for the texels in reach of a block of pixels (DepthBounds). A test point p is seen at
+// (u, v), and read is a texel whose centre lies at most `off` pixels away, so that 1/z* <= a u + b v + c', with
+// c' = c + |a| off_u + |b| off_v. As u = x xScale / z + xCenter, and v likewise, this is l(p) / z with the linear form
+//   l(p) = g . p,   g = (a xScale, b yScale, a xCenter + b yCenter + c').
+// Where l(p) <= 1: z <= z*, p is outside. Else z - z* <= z (1 - 1/l) <= z (l - 1): p is outside if that is <= bias.
+// With p = x + X T' + Y B' + Z N and r = |(X, Y)|:  l(p) <= l(x) + r (|g . T| + |g . B|) + Z g . N, whatever the
+// rotation; g points into the plane, so that g . N < 0 and rays that rise from it lower l.
+// Orthographic: -z* <= a u + b v + c, hence z - z* <= l(p) = g . p + k, g = (a xScale, b yScale, 1),
+// k = a xCenter + b yCenter + c', which must not exceed the bias.
+#if defined(OBSCURA_POST_OPEN_BLOCK_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef OBSCURA_POST_OPEN_BLOCK_INL_H_
+#undef OBSCURA_POST_OPEN_BLOCK_INL_H_
+#else
+#define OBSCURA_POST_OPEN_BLOCK_INL_H_
+#endif
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "obscura/post/ambient_transfer.h"
+#include "obscura/post/vector-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace obscura::post {
+namespace HWY_NAMESPACE {
+
+// Bounds on the test points of a pixel whose frame is right but for a thousandth, scene units.
+struct Reach {
+  float across = 0;                                      // >= |X T' + Y B'|
+  float least = std::numeric_limits<float>::infinity();  // <= Z
+  float length = 0;                                      // >= |p - x|
+
+  explicit Reach(const std::vector<glm::vec3>& points) {
+    constexpr float kWrong = 1.004f;
+    for (const glm::vec3& p : points) {
+      const float square = p.x * p.x + p.y * p.y;
+      across = std::max(across, std::sqrt(square) * kWrong);
+      least = std::min(least, p.z);
+      length = std::max(length, std::sqrt(square + p.z * p.z) * kWrong);
+    }
+  }
+};
+
+// The linear form of a block.
+struct OpenBlock {
+  bool known = false;  // false: nothing can be said
+  float gx = 0, gy = 0, gz = 0, k = 0;
+};
+
+// max(w - a u - b v) over the texels of the cells column0 ... column1 of rows row0 ... row1.
+inline double highestOver(const DepthBounds& bounds, float a, float b, int column0, int column1, int row0, int row1,
+                          float size) {
+  const DF d;
+  const DI di;
+  constexpr float kWidth = DepthBounds::kCellWidth, kHeight = DepthBounds::kCellHeight;
+  const VF none = hn::Set(d, -std::numeric_limits<float>::infinity());
+  VF highest = none;
+  for (int row = row0; row <= row1; ++row) {
+    const VF top = hn::Set(d, float(row) * kHeight + 0.5f), bottom = hn::Add(top, hn::Set(d, kHeight - 1));
+    for (int column = column0; column <= column1; column += int(hn::Lanes(d))) {
+      const VI index = hn::Iota(di, column);
+      const MF inside = hn::RebindMask(d, hn::Lt(index, hn::Set(di, column1 + 1)));
+      const VF left = hn::Add(hn::Mul(hn::ConvertTo(d, index), hn::Set(d, kWidth)), hn::Set(d, 0.5f));
+      const VF right = hn::Add(left, hn::Set(d, kWidth - 1));
+      const VF da = hn::Sub(hn::LoadU(d, bounds.a.row(row) + column), hn::Set(d, a));
+      const VF db = hn::Sub(hn::LoadU(d, bounds.b.row(row) + column), hn::Set(d, b));
+      const VF c = hn::LoadU(d, bounds.c.row(row) + column);
+      VF w = hn::Add(c, hn::Add(hn::Max(hn::Mul(da, left), hn::Mul(da, right)),
+                                hn::Max(hn::Mul(db, top), hn::Mul(db, bottom))));
+      const VF rounding = hn::Mul(hn::Add(hn::Abs(da), hn::Abs(db)), hn::Set(d, size * 0x1p-20f));
+      w = hn::Add(w, rounding);
+      highest = hn::Max(highest, hn::IfThenElse(inside, w, none));
+    }
+  }
+  return hn::GetLane(hn::MaxOfLanes(d, highest));
+}
+
+template <bool kPerspective>
+OpenBlock openBlock(const TransferInput& in, const Reach& reach, int column, int row) {
+  constexpr double kOff = 0.5 + 1.0 / 64;  // from a point's pixel coordinates to its texel's centre, with roundings
+  constexpr int kMostCells = 4096;         // beyond, looking costs as much as sampling
+  constexpr double kFarthest = 32768;      // pixels; up to here 1/64 is enough
+  const DepthBounds& bounds = *in.bounds;
+  const Projector& p = in.projector;
+  // Pixel coordinates are counted from the G-buffer's first texel here.
+  const double xCenter = double(p.xCenter) - p.xFirst, yCenter = double(p.yCenter) - p.yFirst;
+  const float nearest = bounds.nearest.at(column, row);
+  if (!(bounds.c.at(column, row) < std::numeric_limits<float>::infinity()) ||
+      !(nearest < std::numeric_limits<float>::infinity()))
+    return {};
+  const double room = kPerspective ? double(nearest) - reach.length : 1;
+  if (!(room > 0)) return {};
+
+  // Pixel coordinates that points of the block can have: |u_p - u| = |xScale dx - (u - xCenter) dz| / z_p.
+  struct Range {
+    double low, high;  // of u
+    int first, last;   // of the texels read
+    bool sound;
+  };
+  const auto rangeOf = [&](int begin, int end, int size, double scale, double center) {
+    const double u0 = begin + 0.5, u1 = std::min(end, size) - 0.5;
+    const double aside = kPerspective ? std::max(std::fabs(u0 - center), std::fabs(u1 - center)) : 0;
+    const double by = reach.length * std::sqrt(scale * scale + aside * aside) / room + 1;
+    Range r{u0 - by, u1 + by, 0, size - 1, by < kFarthest};
+    if (r.low > 0) r.first = int(std::min(r.low, size - 1.0));
+    if (r.high < size) r.last = int(std::max(r.high, 0.0));
+    return r;
+  };
+  const int x0 = column * DepthBounds::kCellWidth, y0 = row * DepthBounds::kCellHeight;
+  const Range u = rangeOf(x0, x0 + DepthBounds::kCellWidth, p.width, p.xScale, xCenter);
+  const Range v = rangeOf(y0, y0 + DepthBounds::kCellHeight, p.height, p.yScale, yCenter);
+  if (!u.sound || !v.sound) return {};
+  const int column0 = u.first / DepthBounds::kCellWidth, column1 = u.last / DepthBounds::kCellWidth;
+  const int row0 = v.first / DepthBounds::kCellHeight, row1 = v.last / DepthBounds::kCellHeight;
+  if ((column1 - column0 + 1) * (row1 - row0 + 1) > kMostCells) return {};
+
+  // Beyond the border the texel read may be further off, on the inner side.
+  const auto off = [&](double slope, const Range& r, int size) {
+    return std::fabs(slope) * (kOff + std::max(0.0, slope > 0 ? -r.low : r.high - size));
+  };
+  const float a = bounds.a.at(column, row), b = bounds.b.at(column, row);
+  const double c = highestOver(bounds, a, b, column0, column1, row0, row1, float(p.width + p.height)) +
+                   off(a, u, p.width) + off(b, v, p.height);
+  if (!(c < std::numeric_limits<double>::infinity())) return {};
+  const double atCenter = double(a) * xCenter + double(b) * yCenter + c;
+  OpenBlock block{true, a * p.xScale, b * p.yScale, 1, float(atCenter)};
+  if (kPerspective) block.gz = block.k, block.k = 0;
+  return block;
+}
+
+// Lanes whose rays all stay outside; t and b as yet unturned.
+template <bool kPerspective>
+HWY_INLINE MF knownOpen(const OpenBlock& block, const Reach& reach, const V3& x, const V3& t, const V3& b, const V3& n,
+                        float bias) {
+  const DF d;
+  const V3 g{hn::Set(d, block.gx), hn::Set(d, block.gy), hn::Set(d, block.gz)};
+  const VF k = hn::Set(d, block.k), length = hn::Set(d, reach.length);
+  const VF farthest = hn::Add(x.z, length);  // z of no test point is larger
+  const VF aside = hn::Mul(hn::Set(d, reach.across), hn::Add(hn::Abs(dot(g, t)), hn::Abs(dot(g, b))));
+  const VF facing = dot(g, n);
+  const VF rise =
+      hn::Mul(facing, hn::IfThenElse(hn::Lt(facing, hn::Zero(d)), hn::Set(d, reach.least), length));
+  // Some twenty roundings, each of at most 2^-24 of a part of this.
+  const V3 size{hn::Add(hn::Abs(x.x), length), hn::Add(hn::Abs(x.y), length), farthest};
+  const VF rounding = hn::Mul(hn::Add(dot({hn::Abs(g.x), hn::Abs(g.y), hn::Abs(g.z)}, size), hn::Abs(k)),
+                              hn::Set(d, 0x1p-18f));
+  VF l = hn::Add(hn::Add(hn::Add(dot(g, x), k), hn::Add(aside, rise)), rounding);
+  if (kPerspective) l = hn::Mul(hn::Sub(l, hn::Set(d, 1.0f)), farthest);
+  // T is unit by its making; what it lacks in perpendicularity where N is nearly parallel to (0, 1, 0.01) shows here.
+  const MF right = hn::And(hn::Le(dot(n, n), hn::Set(d, 1.001f)), hn::Le(hn::Abs(dot(t, n)), hn::Set(d, 1e-3f)));
+  return hn::And(hn::Le(l, hn::Set(d, bias)), right);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace obscura::post
+HWY_AFTER_NAMESPACE();
+#endif
