@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <functional>
 #include <limits>
 #include <map>
 #include <stdexcept>
@@ -10,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "obscura/raster/candidates.h"
 #include "obscura/raster/cull.h"
 #include "obscura/raster/depth_layers.h"
 #include "obscura/raster/float_environment.h"
@@ -25,17 +25,8 @@
 namespace obscura::raster {
 namespace {
 
-// A cluster that may be seen.
-struct Candidate {
-  const Draw* draw;
-  const Cluster* cluster;
-  float nearestKey;
-};
-
 struct Worker {
   Statistics statistics;
-  std::vector<Candidate> candidates;
-  int64_t boxes = 0;  // pixels in their boxes
   TransformedVertices vertices;
   TileMemory tile, behind;
   Plane<float> limit;  // of a tile
@@ -47,8 +38,6 @@ constexpr size_t kFewClusters = 512;
 constexpr int64_t kFewLayers = 4;
 // Clusters that the first rounds look at; later ones look at twice as many each.
 constexpr size_t kFirstClusters = 8192;
-// The nearest of the clusters found, one in so many, are drawn before the others are looked at again.
-constexpr size_t kFrontPart = 4;
 // The visibility of larger images (pixels) is not kept from round to round: 8 bytes a pixel.
 constexpr int64_t kMostKept = int64_t(1) << 24;
 
@@ -56,6 +45,25 @@ int bitsOfTile(int tile) {
   for (int bits = kMinTileBits; bits <= kMaxTileBits; ++bits)
     if (tile == 1 << bits) return bits;
   throw std::invalid_argument("obscura raster: tile of " + std::to_string(tile) + " pixels, not 16, 32 or 64");
+}
+
+struct Stopwatch {
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point last = Clock::now();
+  double lap() {
+    const Clock::time_point now = Clock::now();
+    return std::chrono::duration<double, std::milli>(now - std::exchange(last, now)).count();
+  }
+};
+
+// Clusters of meshes that came without.
+void clusterThoseWithout(std::vector<Draw>& draws, std::map<const MeshView*, Clusters>& made) {
+  for (Draw& d : draws) {
+    if (d.clusters) continue;
+    auto [entry, fresh] = made.try_emplace(d.mesh);
+    if (fresh) entry->second = buildClusters(d.mesh->positions, d.mesh->indices);
+    d.clusters = &entry->second;
+  }
 }
 
 // Single-sided draws once more, to set up what faces away.
@@ -89,19 +97,16 @@ struct Rasterizer::State {
       : settings(s), target(chooseTarget(s.target)), tileBits(bitsOfTile(s.tile)), parallel(s.threads) {}
 
   void render(const DrawList& list, const View& view, const Camera& camera, const PlaneSet& planes, GBuffer& out);
+  void beginFrame(const View& view, const PlaneSet& planes, GBuffer& out);
+  void drawVisible(const SurfaceContext& context, bool mayHide);
   void startRounds();
-  std::vector<const Draw*> visibleInstances(const View& view, const std::vector<Draw>& draws);
-  std::vector<Candidate> findCandidates(const View& view, Span<const Draw* const> draws);
   void setupClusters(const View& view, Span<const Candidate> candidates, bool again, std::vector<Bins>& into);
   void setupAway(const View& view, const std::vector<Draw>& draws);
   void drawRound(const SurfaceContext& context);
   void finishTiles(const SurfaceContext& context, const PlaneSet& planes, GBuffer& out);
   void drawLayer(const SurfaceContext& context, const TileBuffers& first, bool covered, int index, LayerBehind layer,
                  float separation, Worker& worker, Plane<float>& out);
-  void skip(Statistics& s, uint64_t Statistics::*what, uint64_t triangles) {
-    ++(s.*what);
-    s.trianglesCulled += triangles;
-  }
+  const OcclusionMap* seen() const { return drawn ? &occlusion : nullptr; }
   bool drawn = false;  // a round was: the map says something
 };
 
@@ -122,96 +127,21 @@ void Rasterizer::State::startRounds() {
   started.assign(size_t(grid.count()), 0);
 }
 
-// Front to back.
-std::vector<const Draw*> Rasterizer::State::visibleInstances(const View& view, const std::vector<Draw>& draws) {
-  std::vector<std::pair<float, const Draw*>> found;
-  for (const Draw& draw : draws) {
-    ++statistics.instances;
-    statistics.triangles += draw.triangleCount;
-    const ViewSphere sphere = viewSphere(draw, draw.clusters->center, draw.clusters->radius);
-    if (settings.skip && !sphereVisible(view, sphere)) skip(statistics, &Statistics::instancesCulled, draw.triangleCount);
-    else found.push_back({-screenBound(view, sphere).nearestKey, &draw});
-  }
-  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<const Draw*> visible;
-  for (const auto& [key, draw] : found) visible.push_back(draw);
-  return visible;
-}
-
-// Those clusters of the draws that are not certainly invisible.
-std::vector<Candidate> Rasterizer::State::findCandidates(const View& view, Span<const Draw* const> draws) {
-  // Clusters numbered through: first[k] is the number of draw k's first.
-  std::vector<const Draw*> open;
-  std::vector<size_t> first;
-  size_t count = 0;
-  for (const Draw* draw : draws) {
-    if (drawn && occlusion.hides(screenBound(view, viewSphere(*draw, draw->clusters->center, draw->clusters->radius)))) {
-      skip(statistics, &Statistics::instancesHidden, draw->triangleCount);
-      continue;
-    }
-    open.push_back(draw);
-    first.push_back(count);
-    count += draw->clusters->clusters.size();
-  }
-  statistics.clusters += count;
-  for (auto& w : workers) {
-    w->candidates.clear();
-    w->boxes = 0;
-  }
-  constexpr size_t kClustersPerTask = 256;
-  parallel.forRanges(count, kClustersPerTask, [&](size_t begin, size_t end, int index) {
-    Worker& worker = *workers[size_t(index)];
-    size_t k = size_t(std::upper_bound(first.begin(), first.end(), begin) - first.begin()) - 1;
-    for (size_t i = begin; i < end; ++i) {
-      while (k + 1 < first.size() && i >= first[k + 1]) ++k;
-      const Draw& draw = *open[k];
-      const Cluster& cluster = draw.clusters->clusters[i - first[k]];
-      Candidate candidate{&draw, &cluster, 0};
-      if (settings.skip) {
-        const ViewSphere sphere = viewSphere(draw, cluster.center, cluster.radius);
-        if (!clusterFacesEye(draw, cluster) || !sphereVisible(view, sphere)) {
-          skip(worker.statistics, &Statistics::clustersCulled, cluster.triangleCount);
-          continue;
-        }
-        const ScreenBound bound = screenBound(view, sphere);
-        if (drawn && occlusion.hides(bound)) {
-          skip(worker.statistics, &Statistics::clustersHidden, cluster.triangleCount);
-          continue;
-        }
-        candidate.nearestKey = bound.nearestKey;
-        worker.boxes += int64_t(std::max(bound.x1 - bound.x0 + 1, 0)) * std::max(bound.y1 - bound.y0 + 1, 0);
-      }
-      worker.candidates.push_back(candidate);
-    }
-  });
-  std::vector<Candidate> all;
-  for (auto& w : workers) all.insert(all.end(), w->candidates.begin(), w->candidates.end());
-  return all;
-}
-
-// The nearest ones, and the others; both stay in the order of the memory that they read.
-std::pair<Span<const Candidate>, Span<const Candidate>> frontAndRest(std::vector<Candidate>& found) {
-  if (found.empty()) return {};
-  std::vector<float> keys;
-  for (const Candidate& c : found) keys.push_back(c.nearestKey);
-  const auto threshold = keys.begin() + std::ptrdiff_t(found.size() / kFrontPart);
-  std::nth_element(keys.begin(), threshold, keys.end(), std::greater<>());
-  const auto isNear = [&](const Candidate& c) { return c.nearestKey > *threshold; };
-  const size_t front = size_t(std::stable_partition(found.begin(), found.end(), isNear) - found.begin());
-  return {{found.data(), front}, {found.data() + front, found.size() - front}};
-}
-
 // again: more has been drawn since the candidates were found.
 void Rasterizer::State::setupClusters(const View& view, Span<const Candidate> candidates, bool again, std::vector<Bins>& into) {
   for (Bins& b : into) b.reset(grid);
   constexpr size_t kClustersPerTask = 32;
   parallel.forRanges(candidates.size(), kClustersPerTask, [&](size_t begin, size_t end, int index) {
     Worker& worker = *workers[size_t(index)];
+    const auto leaveOut = [&](uint64_t Statistics::*what, const Cluster& cluster) {
+      ++(worker.statistics.*what);
+      worker.statistics.trianglesCulled += cluster.triangleCount;
+    };
     for (size_t i = begin; i < end; ++i) {
       const Draw& draw = *candidates[i].draw;
       const Cluster& cluster = *candidates[i].cluster;
       if (again && occlusion.hides(screenBound(view, viewSphere(draw, cluster.center, cluster.radius)))) {
-        skip(worker.statistics, &Statistics::clustersHidden, cluster.triangleCount);
+        leaveOut(&Statistics::clustersHidden, cluster);
         continue;
       }
       const Clusters& all = *draw.clusters;
@@ -222,19 +152,20 @@ void Rasterizer::State::setupClusters(const View& view, Span<const Candidate> ca
         const ScreenBound bound = boundOf(view, v);
         const bool misses = v.allCodes != 0 || bound.x0 > bound.x1 || bound.y0 > bound.y1;
         if (misses || (drawn && occlusion.hides(bound))) {
-          skip(worker.statistics, misses ? &Statistics::clustersCulled : &Statistics::clustersHidden, cluster.triangleCount);
+          leaveOut(misses ? &Statistics::clustersCulled : &Statistics::clustersHidden, cluster);
           continue;
         }
       }
-      setupCluster(view, draw, cluster, v, drawn ? &occlusion : nullptr, into[size_t(index)], worker.statistics, target);
+      setupCluster(view, draw, cluster, v, seen(), into[size_t(index)], worker.statistics, target);
     }
   });
 }
 
 // What faces away, for GBuffer::depthBack; not counted.
 void Rasterizer::State::setupAway(const View& view, const std::vector<Draw>& draws) {
-  setupClusters(view, findCandidates(view, visibleInstances(view, draws)), false, awayBins);
-  statistics = {};
+  Statistics uncounted;
+  const std::vector<const Draw*> visible = visibleInstances(view, draws, settings.skip, uncounted);
+  setupClusters(view, findCandidates(view, visible, {settings.skip, nullptr}, parallel, uncounted).clusters, false, awayBins);
   for (auto& w : workers) w->statistics = {};
 }
 
@@ -244,6 +175,7 @@ bool anyOf(Span<const Bins> bins, int tile) {
 
 // The bins into the tiles that are kept, and these into the map.
 void Rasterizer::State::drawRound(const SurfaceContext& context) {
+  Stopwatch watch;
   parallel.forRanges(size_t(grid.count()), 1, [&](size_t begin, size_t end, int) {
     for (size_t t = begin; t < end; ++t) {
       if (!anyOf(bins, int(t))) continue;
@@ -254,6 +186,7 @@ void Rasterizer::State::drawRound(const SurfaceContext& context) {
     }
   });
   drawn = true;
+  timings.tilesMs += watch.lap();
 }
 
 // A layer behind the first of a tile.
@@ -307,62 +240,58 @@ void Rasterizer::render(const DrawList& list, const Camera& camera, int width, i
   cutOut(whole, {wanted.x - drawn.x, wanted.y - drawn.y, wanted.width, wanted.height}, out);
 }
 
-void Rasterizer::State::render(const DrawList& list, const View& view, const Camera& camera, const PlaneSet& planes, GBuffer& out) {
-  const auto start = std::chrono::steady_clock::now();
-  if (out.width != view.width || out.height != view.height || !out.has(planes)) out = GBuffer(view.width, view.height, planes);
-  statistics = {};
-  timings = {};
-  if (workers.empty()) {
-    bins.resize(size_t(parallel.workers()));
-    awayBins.resize(size_t(parallel.workers()));
-    for (int i = 0; i < parallel.workers(); ++i) workers.push_back(std::make_unique<Worker>());
-  }
-  for (auto& w : workers) w->statistics = {};
-
-  std::vector<Draw> draws = makeDraws(list, camera);
-  std::map<const MeshView*, Clusters> made;  // of meshes that came without
-  for (Draw& d : draws) {
-    if (d.clusters) continue;
-    auto [entry, fresh] = made.try_emplace(d.mesh);
-    if (fresh) entry->second = buildClusters(d.mesh->positions, d.mesh->indices);
-    d.clusters = &entry->second;
-  }
-  grid = TileGrid(view.width, view.height, tileBits);
-  keep = planes.depthsAlone() ? Keep::Key : Keep::Visibility;
-  const SurfaceContext context{&view, draws, list.textures, srgb.linear};
-  rounds = drawn = false;
-  if (planes.depthBack) setupAway(view, awayDraws(draws));
-  for (Bins& b : bins) b.reset(grid);
-  auto lap = [last = start](double& milliseconds) mutable {
-    const auto now = std::chrono::steady_clock::now();
-    milliseconds += std::chrono::duration<double, std::milli>(now - std::exchange(last, now)).count();
-  };
-
-  const std::vector<const Draw*> visible = visibleInstances(view, draws);
-  // What lies behind the first layer must not be hidden by it.
+// All that is visible into bins, and but for the last round into tiles.
+void Rasterizer::State::drawVisible(const SurfaceContext& context, bool mayHide) {
+  const View& view = *context.view;
   const int64_t pixels = int64_t(view.width) * view.height;
-  const bool mayHide = settings.skip && !planes.depth2 && !planes.depthBack && pixels <= kMostKept;
+  const std::vector<const Draw*> visible = visibleInstances(view, context.draws, settings.skip, statistics);
   size_t look = mayHide ? kFirstClusters : std::numeric_limits<size_t>::max();
   for (size_t from = 0, to = 0; from < visible.size(); from = to, look *= 2) {
     for (size_t count = 0; to < visible.size() && (to == from || count + visible[to]->clusters->clusters.size() <= look); ++to)
       count += visible[to]->clusters->clusters.size();
     if (from > 0) drawRound(context);
-    lap(timings.tilesMs);
-    std::vector<Candidate> found = findCandidates(view, {visible.data() + from, to - from});
-    int64_t boxes = 0;
-    for (const auto& w : workers) boxes += w->boxes;
-    if (mayHide && !rounds && (to < visible.size() || (found.size() >= kFewClusters && boxes >= kFewLayers * pixels))) startRounds();
-    const auto [front, rest] = rounds ? frontAndRest(found) : std::pair<Span<const Candidate>, Span<const Candidate>>{found, {}};
+    Candidates found = findCandidates(view, {visible.data() + from, to - from}, {settings.skip, seen()}, parallel, statistics);
+    const bool deep = found.clusters.size() >= kFewClusters && found.boxes >= kFewLayers * pixels;
+    if (mayHide && !rounds && (deep || to < visible.size())) startRounds();
+    if (!rounds) {
+      setupClusters(view, found.clusters, false, bins);
+      continue;
+    }
+    const auto [front, rest] = frontAndRest(found.clusters);
     setupClusters(view, front, false, bins);
-    lap(timings.setupMs);
-    if (rest.empty()) continue;
     drawRound(context);
-    lap(timings.tilesMs);
     setupClusters(view, rest, true, bins);
-    lap(timings.setupMs);
   }
+}
+
+void Rasterizer::State::beginFrame(const View& view, const PlaneSet& planes, GBuffer& out) {
+  if (out.width != view.width || out.height != view.height || !out.has(planes)) out = GBuffer(view.width, view.height, planes);
+  grid = TileGrid(view.width, view.height, tileBits);
+  keep = planes.depthsAlone() ? Keep::Key : Keep::Visibility;
+  rounds = drawn = false;
+  statistics = {};
+  timings = {};
+  while (workers.size() < size_t(parallel.workers())) workers.push_back(std::make_unique<Worker>());
+  for (auto& w : workers) w->statistics = {};
+  for (std::vector<Bins>* list : {&bins, &awayBins}) {
+    list->resize(workers.size());
+    for (Bins& b : *list) b.reset(grid);
+  }
+}
+
+void Rasterizer::State::render(const DrawList& list, const View& view, const Camera& camera, const PlaneSet& planes, GBuffer& out) {
+  Stopwatch watch;
+  beginFrame(view, planes, out);
+  std::vector<Draw> draws = makeDraws(list, camera);
+  std::map<const MeshView*, Clusters> made;
+  clusterThoseWithout(draws, made);
+  const SurfaceContext context{&view, draws, list.textures, srgb.linear};
+  if (planes.depthBack) setupAway(view, awayDraws(draws));
+  // What lies behind the first layer must not be hidden by it.
+  drawVisible(context, settings.skip && !planes.depth2 && !planes.depthBack && int64_t(view.width) * view.height <= kMostKept);
+  timings.setupMs = watch.lap() - timings.tilesMs;
   finishTiles(context, planes, out);
-  lap(timings.tilesMs);
+  timings.tilesMs += watch.lap();
   for (const auto& w : workers) statistics.add(w->statistics);
 }
 
