@@ -86,16 +86,15 @@ Candidates findCandidates(const View& view, Span<const Draw* const> draws, const
   return all;
 }
 
-std::pair<Span<const Candidate>, Span<const Candidate>> frontAndRest(std::vector<Candidate>& clusters) {
-  constexpr size_t kFrontPart = 4;
-  if (clusters.empty()) return {};
+size_t nearestFirst(Candidate* clusters, size_t count, size_t parts) {
+  if (parts <= 1 || count == 0) return count;
   std::vector<float> keys;
-  for (const Candidate& c : clusters) keys.push_back(c.nearestKey);
-  const auto threshold = keys.begin() + std::ptrdiff_t(clusters.size() / kFrontPart);
+  keys.reserve(count);
+  for (size_t i = 0; i < count; ++i) keys.push_back(clusters[i].nearestKey);
+  const auto threshold = keys.begin() + std::ptrdiff_t(count / parts);
   std::nth_element(keys.begin(), threshold, keys.end(), std::greater<>());
   const auto isNear = [&](const Candidate& c) { return c.nearestKey > *threshold; };
-  const size_t front = size_t(std::stable_partition(clusters.begin(), clusters.end(), isNear) - clusters.begin());
-  return {{clusters.data(), front}, {clusters.data() + front, clusters.size() - front}};
+  return size_t(std::stable_partition(clusters, clusters + count, isNear) - clusters);
 }
 
 }  // namespace obscura::raster

@@ -37,8 +37,8 @@ std::vector<const Draw*> visibleInstances(const View& view, Span<const Draw> dra
 Candidates findCandidates(const View& view, Span<const Draw* const> draws, const Culling& culling, Parallel& parallel,
                           Statistics& statistics);
 
-// The nearest ones, one in four or so, and the others. Both stay in the order of the memory that they read; which is in
-// which part does not depend on the order.
-std::pair<Span<const Candidate>, Span<const Candidate>> frontAndRest(std::vector<Candidate>& clusters);
+// Puts the nearest ones, one in `parts`, before the others, and tells how many they are. Both stay in the order of the
+// memory that they read; which is in which part does not depend on the order.
+size_t nearestFirst(Candidate* clusters, size_t count, size_t parts);
 
 }  // namespace obscura::raster

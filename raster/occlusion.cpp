@@ -14,22 +14,15 @@ HWY_BEFORE_NAMESPACE();
 namespace obscura::raster {
 namespace HWY_NAMESPACE {
 
-// The least of a block's keys so far and another block's. No key is NaN, so the order does not matter.
-HWY_INLINE void least(const float* keys, float out[16]) {
-  const DF d;
-  for (int i = 0; i < kBlock * kBlock; i += int(hn::Lanes(d))) hn::Store(hn::Min(hn::Load(d, keys + i), hn::Load(d, out + i)), d, out + i);
-}
-
 void FarthestKeys(const TileBuffers& tile, Plane<float>& out) {
-  constexpr int kBlocks = kRegion / kBlock;
+  const DF d;
   const int columns = (tile.width + kBlock - 1) >> kBlockBits, rows = (tile.height + kBlock - 1) >> kBlockBits;
-  for (int y = 0; y < rows; y += kBlocks)
-    for (int x = 0; x < columns; x += kBlocks) {
-      HWY_ALIGN float keys[kBlock * kBlock];
-      std::fill_n(keys, kBlock * kBlock, std::numeric_limits<float>::infinity());
-      for (int j = y; j < std::min(y + kBlocks, rows); ++j)
-        for (int i = x; i < std::min(x + kBlocks, columns); ++i) least(tile.key + tile.at(i * kBlock, j * kBlock), keys);
-      out.at((tile.x >> kRegionBits) + x / kBlocks, (tile.y >> kRegionBits) + y / kBlocks) = *std::min_element(keys, keys + kBlock * kBlock);
+  for (int y = 0; y < rows; ++y)
+    for (int x = 0; x < columns; ++x) {
+      const float* keys = tile.key + tile.at(x * kBlock, y * kBlock);
+      VF least = hn::Load(d, keys);  // no key is NaN, so the order does not matter
+      for (int i = int(hn::Lanes(d)); i < kBlock * kBlock; i += int(hn::Lanes(d))) least = hn::Min(least, hn::Load(d, keys + i));
+      out.at((tile.x >> kBlockBits) + x, (tile.y >> kBlockBits) + y) = hn::GetLane(hn::MinOfLanes(d, least));
     }
 }
 
@@ -45,7 +38,7 @@ namespace obscura::raster {
 HWY_EXPORT(FarthestKeys);
 
 void OcclusionMap::reset(int width, int height) {
-  farthest_.resize((width + kRegion - 1) >> kRegionBits, (height + kRegion - 1) >> kRegionBits);
+  farthest_.resize((width + kBlock - 1) >> kBlockBits, (height + kBlock - 1) >> kBlockBits);
   for (int y = 0; y < farthest_.height(); ++y)
     std::fill_n(farthest_.row(y), farthest_.width(), -std::numeric_limits<float>::infinity());
 }
@@ -53,8 +46,8 @@ void OcclusionMap::reset(int width, int height) {
 void OcclusionMap::update(const TileBuffers& tile, Target target) { OBSCURA_DISPATCH(FarthestKeys, target)(tile, farthest_); }
 
 bool OcclusionMap::hides(const ScreenBound& b) const {
-  for (int y = b.y0 >> kRegionBits; y <= b.y1 >> kRegionBits; ++y)
-    for (int x = b.x0 >> kRegionBits; x <= b.x1 >> kRegionBits; ++x)
+  for (int y = b.y0 >> kBlockBits; y <= b.y1 >> kBlockBits; ++y)
+    for (int x = b.x0 >> kBlockBits; x <= b.x1 >> kBlockBits; ++x)
       if (!(farthest_.at(x, y) > b.nearestKey)) return false;
   return true;
 }

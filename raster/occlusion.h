@@ -14,9 +14,7 @@ struct ScreenBound {
   float nearestKey = 0;
 };
 
-constexpr int kRegionBits = 3, kRegion = 1 << kRegionBits;  // pixels a side
-
-// The farthest key of every region of 8 x 8 pixels. Keys only grow while a frame is drawn, so what is hidden stays hidden:
+// The farthest key of every block of pixels. Keys only grow while a frame is drawn, so what is hidden stays hidden:
 // hides() tells nothing but the truth about the finished frame, whatever has been drawn by then. A key that equals the
 // farthest one is not hidden, since the smaller id wins.
 class OcclusionMap {
@@ -25,7 +23,7 @@ class OcclusionMap {
   void update(const TileBuffers& tile, Target target);
   bool hides(const ScreenBound& bound) const;
 
-  const float* farthest() const { return farthest_.data(); }  // of region (x, y): [y * stride() + x]
+  const float* farthest() const { return farthest_.data(); }  // of block (x, y): [y * stride() + x]
   int stride() const { return int(farthest_.stride()); }
 
  private:

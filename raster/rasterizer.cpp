@@ -38,6 +38,8 @@ constexpr size_t kFewClusters = 512;
 constexpr int64_t kFewLayers = 4;
 // Clusters that the first rounds look at; later ones look at twice as many each.
 constexpr size_t kFirstClusters = 8192;
+// Rounds that the clusters looked at are dealt out to.
+constexpr size_t kRounds = 3;
 // The visibility of larger images (pixels) is not kept from round to round: 8 bytes a pixel.
 constexpr int64_t kMostKept = int64_t(1) << 24;
 
@@ -253,14 +255,15 @@ void Rasterizer::State::drawVisible(const SurfaceContext& context, bool mayHide)
     Candidates found = findCandidates(view, {visible.data() + from, to - from}, {settings.skip, seen()}, parallel, statistics);
     const bool deep = found.clusters.size() >= kFewClusters && found.boxes >= kFewLayers * pixels;
     if (mayHide && !rounds && (deep || to < visible.size())) startRounds();
-    if (!rounds) {
-      setupClusters(view, found.clusters, false, bins);
-      continue;
+    Candidate* rest = found.clusters.data();
+    size_t count = found.clusters.size();
+    for (size_t parts = rounds ? kRounds : 1; parts > 0; --parts) {
+      if (parts < kRounds && rounds) drawRound(context);
+      const size_t front = nearestFirst(rest, count, parts);
+      setupClusters(view, {rest, front}, parts < kRounds && rounds, bins);
+      rest += front;
+      count -= front;
     }
-    const auto [front, rest] = frontAndRest(found.clusters);
-    setupClusters(view, front, false, bins);
-    drawRound(context);
-    setupClusters(view, rest, true, bins);
   }
 }
 

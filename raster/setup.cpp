@@ -167,14 +167,17 @@ HWY_INLINE VI doubledArea(const Corners& c) {
                  hn::Mul(hn::Sub(c.x[2], c.x[0]), hn::Sub(c.y[1], c.y[0])));
 }
 
-// Which of the triangles `mask` lie behind what has been drawn, as far as boxes of two regions a side at most tell.
+// Which of the triangles `mask` lie behind what has been drawn, as far as boxes of two blocks a side at most tell.
 HWY_INLINE MI hiddenBoxes(const OcclusionMap& occlusion, const Box& box, VF nearestKey, MI mask) {
   const DF d;
   const DI di;
-  const VI most = hn::Set(di, kRegion), stride = hn::Set(di, occlusion.stride());
-  const MI small = hn::AndNot(hn::Or(hn::Gt(hn::Sub(box.x1, box.x0), most), hn::Gt(hn::Sub(box.y1, box.y0), most)), mask);
-  auto region = [&](VI pixel) HWY_ATTR { return hn::IfThenElseZero(small, hn::ShiftRight<kRegionBits>(pixel)); };
-  const VI x0 = region(box.x0), x1 = region(box.x1), row0 = hn::Mul(region(box.y0), stride), row1 = hn::Mul(region(box.y1), stride);
+  const VI one = hn::Set(di, 1), stride = hn::Set(di, occlusion.stride());
+  auto block = [&](VI pixel) HWY_ATTR { return hn::ShiftRight<kBlockBits>(pixel); };
+  const MI wide = hn::Gt(hn::Sub(block(box.x1), block(box.x0)), one), high = hn::Gt(hn::Sub(block(box.y1), block(box.y0)), one);
+  const MI small = hn::AndNot(hn::Or(wide, high), mask);
+  auto blockIn = [&](VI pixel) HWY_ATTR { return hn::IfThenElseZero(small, block(pixel)); };
+  const VI x0 = blockIn(box.x0), x1 = blockIn(box.x1);
+  const VI row0 = hn::Mul(blockIn(box.y0), stride), row1 = hn::Mul(blockIn(box.y1), stride);
   auto behind = [&](VI row, VI x) HWY_ATTR { return hn::Gt(hn::GatherIndex(d, occlusion.farthest(), hn::Add(row, x)), nearestKey); };
   MF all = hn::And(hn::RebindMask(d, small), behind(row0, x0));
   if (hn::AllFalse(d, all)) return hn::RebindMask(di, all);
