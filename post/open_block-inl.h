@@ -57,12 +57,14 @@ inline double highestOver(const DepthBounds& bounds, float a, float b, int colum
   const DI di;
   constexpr float kWidth = DepthBounds::kCellWidth, kHeight = DepthBounds::kCellHeight;
   const VF none = hn::Set(d, -std::numeric_limits<float>::infinity());
+  const int lanes = int(hn::Lanes(d)), start = column0 / lanes * lanes;  // where a whole vector can be loaded
   VF highest = none;
   for (int row = row0; row <= row1; ++row) {
     const VF top = hn::Set(d, float(row) * kHeight + 0.5f), bottom = hn::Add(top, hn::Set(d, kHeight - 1));
-    for (int column = column0; column <= column1; column += int(hn::Lanes(d))) {
+    for (int column = start; column <= column1; column += lanes) {
       const VI index = hn::Iota(di, column);
-      const MF inside = hn::RebindMask(d, hn::Lt(index, hn::Set(di, column1 + 1)));
+      const MF inside = hn::RebindMask(d, hn::And(hn::Gt(index, hn::Set(di, column0 - 1)),
+                                                  hn::Lt(index, hn::Set(di, column1 + 1))));
       const VF left = hn::Add(hn::Mul(hn::ConvertTo(d, index), hn::Set(d, kWidth)), hn::Set(d, 0.5f));
       const VF right = hn::Add(left, hn::Set(d, kWidth - 1));
       const VF da = hn::Sub(hn::LoadU(d, bounds.a.row(row) + column), hn::Set(d, a));
