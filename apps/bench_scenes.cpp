@@ -214,7 +214,7 @@ engine::Scene makeGround(int boxes) {
   addBox(scene.meshes[0], {-40, 0, -40}, {40, 0, 40});
   Random random(5);
   for (int k = 0; k < boxes; ++k) {
-    const double x = random.in(-6, 5), z = random.in(-8, 3);
+    const double x = random.in(-5, 4), z = random.in(-5, 3);
     addBox(scene.meshes[1], {x, 0, z}, {x + random.in(0.5, 1.5), random.in(0.5, 1.5), z + random.in(0.5, 1.5)});
   }
   scene.meshes[1].material = 1;
@@ -225,9 +225,9 @@ engine::Scene makeGround(int boxes) {
   }
   engine::SceneCamera camera;
   camera.name = "across";
-  camera.worldFromView[1] = {0, 0.9375, -0.3479, 0};  // about 20 degrees downwards
-  camera.worldFromView[2] = {0, 0.3479, 0.9375, 0};
-  camera.worldFromView[3] = {0, 4.5, 9, 1};
+  camera.worldFromView[1] = {0, 0.8, -0.6, 0};  // looks down by 37 degrees
+  camera.worldFromView[2] = {0, 0.6, 0.8, 0};
+  camera.worldFromView[3] = {0, 6, 8, 1};
   scene.cameras.push_back(camera);
   return scene;
 }

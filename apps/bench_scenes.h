@@ -40,7 +40,7 @@ engine::Mesh makeBall(uint32_t triangles);
 constexpr uint32_t kBallTriangles = 200000;
 BenchScene makeField(uint64_t triangles, bool unique, double aspect);
 
-// A plane of 80 x 80 units with `boxes` boxes about 1 unit high, and a camera 4.5 units above it: mostly open ground.
+// A plane of 80 x 80 units with `boxes` boxes about 1 unit high, and a camera 6 units above it: mostly open ground.
 engine::Scene makeGround(int boxes);
 
 }  // namespace obscura::apps

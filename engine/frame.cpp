@@ -240,7 +240,8 @@ void Renderer::State::drawDisplay(Frame& out) {
 // The same frame, of sub-pixels.
 FrameSettings subpixels(FrameSettings s) {
   s.width *= s.supersample, s.height *= s.supersample, s.border *= s.supersample;
-  if (s.crop) s.crop = raster::Window{s.crop->x * s.supersample, s.crop->y * s.supersample, s.crop->width * s.supersample, s.crop->height * s.supersample};
+  if (s.crop)
+    for (int* v : {&s.crop->x, &s.crop->y, &s.crop->width, &s.crop->height}) *v *= s.supersample;
   return s;
 }
 

@@ -50,9 +50,10 @@ struct OpenBlock {
   float gx = 0, gy = 0, gz = 0, k = 0;
 };
 
-// max(w - a u - b v) over the texels of the cells column0 ... column1 of rows row0 ... row1.
+// max(w - a u - b v) over the texels of the cells column0 ... column1 of rows row0 ... row1; infinity as soon as it is
+// known to exceed `most`.
 inline double highestOver(const DepthBounds& bounds, float a, float b, int column0, int column1, int row0, int row1,
-                          float size) {
+                          float size, float most) {
   const DF d;
   const DI di;
   constexpr float kWidth = DepthBounds::kCellWidth, kHeight = DepthBounds::kCellHeight;
@@ -76,6 +77,7 @@ inline double highestOver(const DepthBounds& bounds, float a, float b, int colum
       w = hn::Add(w, rounding);
       highest = hn::Max(highest, hn::IfThenElse(inside, w, none));
     }
+    if (!hn::AllFalse(d, hn::Gt(highest, hn::Set(d, most)))) return std::numeric_limits<double>::infinity();
   }
   return hn::GetLane(hn::MaxOfLanes(d, highest));
 }
@@ -123,8 +125,13 @@ OpenBlock openBlock(const TransferInput& in, const Reach& reach, int column, int
   const auto off = [&](double slope, const Range& r, int size) {
     return std::fabs(slope) * (kOff + std::max(0.0, slope > 0 ? -r.low : r.high - size));
   };
-  const float a = bounds.a.at(column, row), b = bounds.b.at(column, row);
-  const double c = highestOver(bounds, a, b, column0, column1, row0, row1, float(p.width + p.height)) +
+  const float a = bounds.a.at(column, row), b = bounds.b.at(column, row), own = bounds.c.at(column, row);
+  // What rises more than this over the block's own plane leaves nothing to prove for most of its pixels, even if all
+  // their rays rise twice as much as the least one does straight away from the plane.
+  const double gx = a * p.xScale, gy = b * p.yScale, gz = kPerspective ? a * p.xCenter + b * p.yCenter + own : 1;
+  const double lift = reach.least * std::sqrt(gx * gx + gy * gy + gz * gz);
+  const double most = own + 2 * (kPerspective ? (lift + in.settings.bias / nearest) / nearest : lift + in.settings.bias);
+  const double c = highestOver(bounds, a, b, column0, column1, row0, row1, float(p.width + p.height), float(most)) +
                    off(a, u, p.width) + off(b, v, p.height);
   if (!(c < std::numeric_limits<double>::infinity())) return {};
   const double atCenter = double(a) * xCenter + double(b) * yCenter + c;

@@ -107,7 +107,8 @@ class Bins {
 
   Span<const SmallTriangle> small(Kind kind, int tile) const { return small_[kind][size_t(tile)].view(); }
   bool empty(int tile) const {
-    return large(tile).empty() && std::all_of(small_, small_ + kKinds, [&](const auto& lists) { return lists[size_t(tile)].view().empty(); });
+    const auto none = [&](const auto& lists) { return lists[size_t(tile)].view().empty(); };
+    return large(tile).empty() && std::all_of(small_, small_ + kKinds, none);
   }
   const std::vector<uint32_t>& large(int tile) const { return large_[size_t(tile)]; }
   const LargeTriangle& triangle(uint32_t index) const { return triangles_[index]; }

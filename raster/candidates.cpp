@@ -13,7 +13,8 @@ void leaveOut(Statistics& s, uint64_t Statistics::*what, uint64_t triangles) {
   s.trianglesCulled += triangles;
 }
 
-void addCluster(const View& view, const Draw& draw, const Cluster& cluster, const Culling& culling, Candidates& out, Statistics& statistics) {
+void addCluster(const View& view, const Draw& draw, const Cluster& cluster, const Culling& culling, Candidates& out,
+                Statistics& statistics) {
   Candidate candidate{&draw, &cluster, 0};
   if (culling.skip) {
     const ViewSphere sphere = viewSphere(draw, cluster.center, cluster.radius);

@@ -64,14 +64,16 @@ struct CellBlocks {
 HWY_INLINE CellBlocks blocksOf(const TileBuffers& tile, int left, int top) {
   constexpr int kBlocks = kCell / kBlock;
   const int x = left >> kBlockBits, y = top >> kBlockBits;
-  return {x, y, std::min(kBlocks, ((tile.width - 1) >> kBlockBits) + 1 - x), std::min(kBlocks, ((tile.height - 1) >> kBlockBits) + 1 - y)};
+  const int columns = ((tile.width - 1) >> kBlockBits) + 1, rows = ((tile.height - 1) >> kBlockBits) + 1;
+  return {x, y, std::min(kBlocks, columns - x), std::min(kBlocks, rows - y)};
 }
 
 // Element of the first pixel of a block.
 HWY_INLINE int firstOfBlock(const TileBuffers& tile, int x, int y) { return (y * tile.columns + x) << (2 * kBlockBits); }
 
 // With the draw and, on the way, the vertex indices of each.
-HWY_INLINE void findTriangles(const SurfaceContext& context, const TileBuffers& tile, const CellBlocks& blocks, CellTriangles& cell) {
+HWY_INLINE void findTriangles(const SurfaceContext& context, const TileBuffers& tile, const CellBlocks& blocks,
+                              CellTriangles& cell) {
   const DU d;
   const VU none = hn::Set(d, kNoTriangle);
   CellTable table;
@@ -113,8 +115,10 @@ HWY_INLINE void weightPlanesOf(const View& view, const Draw& draw, const PlaneIn
   const hn::CappedTag<double, 8> d;
   const hn::Rebind<float, decltype(d)> df;
   using V = hn::Vec<decltype(d)>;
-  const V xc = hn::Set(d, double(view.xCenterSub(x)) - double(view.xShiftSub)), yc = hn::Set(d, double(view.yCenterSub(y)) - double(view.yShiftSub));
-  const V xScale = hn::Set(d, double(view.xScaleSub)), yScale = hn::Set(d, double(view.yScaleSub)), sub = hn::Set(d, double(kSub));
+  const V xc = hn::Set(d, double(view.xCenterSub(x)) - double(view.xShiftSub));
+  const V yc = hn::Set(d, double(view.yCenterSub(y)) - double(view.yShiftSub));
+  const V xScale = hn::Set(d, double(view.xScaleSub)), yScale = hn::Set(d, double(view.yScaleSub));
+  const V perPixel = hn::Set(d, double(kSub));
   for (int t = 0; t < int(hn::Lanes(DF())); t += int(hn::Lanes(d))) {
     auto real = [&](const float* p) HWY_ATTR { return hn::PromoteTo(d, hn::Load(df, p + t)); };
     V w[3], hx[3], hy[3], c[3], gx[3], gy[3];
@@ -133,8 +137,8 @@ HWY_INLINE void weightPlanesOf(const View& view, const Draw& draw, const PlaneIn
     for (int i = 0; i < 3; ++i) {
       const int j = i == 2 ? 0 : i + 1, k = i == 0 ? 2 : i - 1;
       c[i] = hn::Sub(hn::Mul(hx[j], hy[k]), hn::Mul(hy[j], hx[k]));
-      gx[i] = hn::Mul(hn::Sub(hn::Mul(w[k], hy[j]), hn::Mul(w[j], hy[k])), sub);
-      gy[i] = hn::Mul(hn::Sub(hn::Mul(w[j], hx[k]), hn::Mul(w[k], hx[j])), sub);
+      gx[i] = hn::Mul(hn::Sub(hn::Mul(w[k], hy[j]), hn::Mul(w[j], hy[k])), perPixel);
+      gy[i] = hn::Mul(hn::Sub(hn::Mul(w[j], hx[k]), hn::Mul(w[k], hx[j])), perPixel);
       grow(c[i]);
       grow(gx[i]);
       grow(gy[i]);
@@ -150,7 +154,8 @@ HWY_INLINE void weightPlanesOf(const View& view, const Draw& draw, const PlaneIn
 }
 
 // The triangles `mine` of the vector from number `first`, all of `draw`.
-HWY_INLINE void describeVector(const View& view, const Draw& draw, bool normals, int x, int y, int first, MI mine, CellTriangles& cell) {
+HWY_INLINE void describeVector(const View& view, const Draw& draw, bool normals, int x, int y, int first, MI mine,
+                               CellTriangles& cell) {
   const DF d;
   const DI di;
   const MF lanes = hn::RebindMask(d, mine);

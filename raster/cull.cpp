@@ -63,7 +63,8 @@ ScreenBound screenBound(const View& view, const ViewSphere& s) {
   for (int axis = 0; axis < 2; ++axis) {
     // x / z of the box around the sphere is least and greatest in its corners.
     const float lo = s.p[axis] - s.reach, hi = s.p[axis] + s.reach;
-    const float least = view.perspective ? lo / (lo < 0 ? first : last) : lo, most = view.perspective ? hi / (hi > 0 ? first : last) : hi;
+    const float least = view.perspective ? lo / (lo < 0 ? first : last) : lo;
+    const float most = view.perspective ? hi / (hi > 0 ? first : last) : hi;
     float from = least * scale[axis] + shift[axis], to = most * scale[axis] + shift[axis];
     if (from > to) std::swap(from, to);
     const float slack = (std::fabs(from) + std::fabs(to)) * kSlack + 2 * kSub;  // a pixel for snapping, one for rounding

@@ -234,12 +234,14 @@ void Rasterizer::render(const DrawList& list, const Camera& camera, int width, i
   checkPlanes(planes);
   const FloatEnvironment environment;
   const Window wanted = window.value_or(Window{0, 0, width, height});
-  const Window drawn{wanted.x & ~(kCell - 1), wanted.y & ~(kCell - 1), wanted.width + (wanted.x & (kCell - 1)), wanted.height + (wanted.y & (kCell - 1))};
-  if (drawn.width == wanted.width && drawn.height == wanted.height) return state_->render(list, makeView(camera, width, height, drawn), camera, planes, out);
-  // Cells are those of the whole image: their planes are what attributes are computed from.
+  // Cells are those of the whole image: their weight planes are what attributes are computed from.
+  const int left = wanted.x & (kCell - 1), top = wanted.y & (kCell - 1);
+  const Window drawn{wanted.x - left, wanted.y - top, wanted.width + left, wanted.height + top};
+  const View view = makeView(camera, width, height, drawn);
+  if (left == 0 && top == 0) return state_->render(list, view, camera, planes, out);
   GBuffer whole;
-  state_->render(list, makeView(camera, width, height, drawn), camera, planes, whole);
-  cutOut(whole, {wanted.x - drawn.x, wanted.y - drawn.y, wanted.width, wanted.height}, out);
+  state_->render(list, view, camera, planes, whole);
+  cutOut(whole, {left, top, wanted.width, wanted.height}, out);
 }
 
 // All that is visible into bins, and but for the last round into tiles.

@@ -1,7 +1,8 @@
 // The rasterizer: draw list and camera in, G-buffer out.
 //
-//   draws -> cull -> transform -> setup (clip) -> bins -> tiles: visibility -> resolve -> G-buffer
-//                                                               keys alone -> depth, and the layers behind the first
+//   draws -> candidates (cull, occlusion) -> transform -> setup (clip) -> bins -> tiles: visibility -> resolve -> G-buffer
+//
+// and, where a scene has many layers, from the candidates to the tiles in rounds, front to back.
 //
 // One header per stage; see view.h for the conventions (handedness, pixel centres, fill rule, depth).
 #pragma once

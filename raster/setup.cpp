@@ -188,7 +188,10 @@ HWY_INLINE MI hiddenBoxes(const OcclusionMap& occlusion, const Box& box, VF near
 // Up to a vector of surviving triangles: field by field what their records are to hold, in the order of SmallTriangle, and
 // what the depth gradients are made of.
 struct Survivors {
-  enum Field { kE0, kE1, kE2, kA, kB, kBlock, kBlocks, kKey0, kXGradient, kYGradient, kXFromP0, kYFromP0, kKeyMin, kKeyMax, kId, kMasked, kFields };
+  enum Field {
+    kE0, kE1, kE2, kA, kB, kBlock, kBlocks, kKey0, kXGradient, kYGradient, kXFromP0, kYFromP0, kKeyMin, kKeyMax, kId, kMasked,
+    kFields
+  };
   HWY_ALIGN int32_t field[kFields][16];
   HWY_ALIGN int32_t dx1[16], dy1[16], dx2[16], dy2[16], area[16];
   HWY_ALIGN float key0[16], key1[16], key2[16];

@@ -81,7 +81,8 @@ HWY_INLINE void fillBlock(MaskedTriangle* masked, const Blocks& t, const PixelVe
   auto edge = [&](int i) HWY_ATTR { return hn::Add(v.offset[i], hn::Set(di, (t.a[i] * column + t.b[i] * row) * kBlock)); };
   const MI inside = hn::Not(hn::Lt(hn::Or(hn::Or(edge(0), edge(1)), edge(2)), hn::Zero(di)));
   const size_t at = size_t(((t.y + row) * out.columns + t.x + column) * (kBlock * kBlock) + v.first);
-  const VF x = hn::Add(v.xFromP0, hn::Set(d, float(column * kBlock * kSub))), y = hn::Add(v.yFromP0, hn::Set(d, float(row * kBlock * kSub)));
+  const VF x = hn::Add(v.xFromP0, hn::Set(d, float(column * kBlock * kSub)));
+  const VF y = hn::Add(v.yFromP0, hn::Set(d, float(row * kBlock * kSub)));
   const VF keyMin = hn::Set(d, t.keyMin), keyMax = hn::Set(d, t.keyMax);
   VF key = hn::Add(hn::Set(d, t.key0), hn::Add(hn::Mul(hn::Set(d, t.xGradient), x), hn::Mul(hn::Set(d, t.yGradient), y)));
   key = hn::IfThenElse(hn::Gt(key, keyMin), key, keyMin);
@@ -164,8 +165,9 @@ HWY_INLINE void fill(const SurfaceContext& context, bool masked, const Blocks& t
 template <Keep kKeep, int kColumns, int kRows>
 HWY_INLINE void rasterFew(const SurfaceContext& context, const SmallTriangle& t, const TileBuffers& out) {
   const int a0 = lowerHalf(t.a), a1 = upperHalf(t.a), b0 = lowerHalf(t.b), b1 = upperHalf(t.b);
-  const Blocks c{{t.e[0], t.e[1], t.e[2]}, {a0, a1, -a0 - a1}, {b0, b1, -b0 - b1}, lowerHalf(t.block) - (out.x >> kBlockBits),
-       upperHalf(t.block) - (out.y >> kBlockBits), kColumns, kRows, t.key0, t.xGradient, t.yGradient, t.keyMin, t.keyMax, t.xFromP0, t.yFromP0, t.id};
+  const int x = lowerHalf(t.block) - (out.x >> kBlockBits), y = upperHalf(t.block) - (out.y >> kBlockBits);
+  const Blocks c{{t.e[0], t.e[1], t.e[2]}, {a0, a1, -a0 - a1}, {b0, b1, -b0 - b1}, x, y, kColumns, kRows,
+                 t.key0, t.xGradient, t.yGradient, t.keyMin, t.keyMax, t.xFromP0, t.yFromP0, t.id};
   if (HWY_UNLIKELY(t.masked)) return fill<kKeep>(context, true, c, out);
   for (int first = 0; first < kBlock * kBlock; first += int(hn::Lanes(DF()))) {
     const PixelVector v = pixelVector(c, first);
