@@ -42,48 +42,71 @@ HWY_INLINE void store3(const V3& v, const At& at, Plane<float> planes[3]) {
   storeRows(d, v.z, at, planes[2]);
 }
 
-// Rows of pixels from blocks of them, four at a time.
-HWY_INLINE void rowFromBlocks(const TileBuffers& tile, int row, float* keys, uint32_t* ids) {
-  const hn::CappedTag<float, kBlock> d;
-  const hn::RebindToUnsigned<decltype(d)> du;
-  for (int column = 0; column < tile.width; column += kBlock)
-    for (int i = 0; i < kBlock; i += int(hn::Lanes(d))) {
-      hn::StoreU(hn::LoadU(d, tile.key + tile.at(column, row) + i), d, keys + column + i);
-      hn::StoreU(hn::LoadU(du, tile.id + tile.at(column, row) + i), du, ids + column + i);
-    }
+// Pixels side by side, one vector for each of the four rows of the blocks that it takes to fill them; at: element of the
+// first. No temporary: a vector that is loaded from what four stores have just written waits for all of them.
+template <class D, class T>
+HWY_INLINE void rowsOfBlocks(D d, const T* at, hn::Vec<D> rows[kBlock]) {
+  constexpr int kLanes = int(hn::MaxLanes(D()));
+#if HWY_TARGET == HWY_AVX3
+  // Blocks are vectors; what is wanted are their transposed quarters.
+  const auto quarters = [&](int block) HWY_ATTR { return hn::BitCast(DI(), hn::Load(d, at + block * kBlock * kBlock)).raw; };
+  const __m512i b0 = quarters(0), b1 = quarters(1), b2 = quarters(2), b3 = quarters(3);
+  const __m512i lower01 = _mm512_shuffle_i32x4(b0, b1, 0x44), upper01 = _mm512_shuffle_i32x4(b0, b1, 0xEE);
+  const __m512i lower23 = _mm512_shuffle_i32x4(b2, b3, 0x44), upper23 = _mm512_shuffle_i32x4(b2, b3, 0xEE);
+  rows[0] = hn::BitCast(d, VI{_mm512_shuffle_i32x4(lower01, lower23, 0x88)});
+  rows[1] = hn::BitCast(d, VI{_mm512_shuffle_i32x4(lower01, lower23, 0xDD)});
+  rows[2] = hn::BitCast(d, VI{_mm512_shuffle_i32x4(upper01, upper23, 0x88)});
+  rows[3] = hn::BitCast(d, VI{_mm512_shuffle_i32x4(upper01, upper23, 0xDD)});
+#elif HWY_TARGET == HWY_AVX2
+  static_assert(kLanes == 2 * kBlock, "a vector holds two rows of a block");
+  for (int half = 0; half < 2; ++half) {
+    const auto b0 = hn::Load(d, at + half * kLanes), b1 = hn::Load(d, at + kBlock * kBlock + half * kLanes);
+    rows[2 * half] = hn::ConcatLowerLower(d, b1, b0);
+    rows[2 * half + 1] = hn::ConcatUpperUpper(d, b1, b0);
+  }
+#else
+  static_assert(kLanes <= kBlock, "a vector lies in a row of a block");
+  for (int row = 0; row < kBlock; ++row) rows[row] = hn::Load(d, at + row * kBlock);
+#endif
 }
 
-// Depth, position and triangle ids need nothing but the visibility: row by row, as memory likes it.
-HWY_INLINE void storeVisibility(const View& view, const TileBuffers& tile, GBuffer& out) {
+// One row of depth, position and triangle ids.
+HWY_INLINE void storeVisible(const View& view, VF key, VU id, int x, int y, GBuffer& out) {
   const DF d;
   const DI di;
   const DU du;
   const VF infinity = hn::Set(d, std::numeric_limits<float>::infinity()), zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  HWY_ALIGN float keys[1 << kMaxTileBits];
-  HWY_ALIGN uint32_t ids[1 << kMaxTileBits];
-  for (int row = 0; row < tile.height; ++row) {
-    const int y = tile.y + row;
-    rowFromBlocks(tile, row, keys, ids);
+  const MF covered = hn::RebindMask(d, hn::Ne(id, hn::Set(du, kNoTriangle)));
+  // 0 - key: a plain negation would give two kinds of zero.
+  const VF zView = view.perspective ? hn::Div(one, key) : hn::Sub(zero, key);
+  if (!out.triangle.empty()) hn::StoreU(id, du, out.triangle.row(y) + x);
+  if (!out.depth.empty()) hn::StoreU(hn::IfThenElse(covered, zView, infinity), d, out.depth.row(y) + x);
+  if (out.position[0].empty()) return;
+  const VF xc = hn::ConvertTo(d, hn::Add(hn::Set(di, view.xCenterSub(x)), hn::ShiftLeft<kSubBits>(hn::Iota(di, 0))));
+  VF px = hn::Div(hn::Sub(xc, hn::Set(d, view.xShiftSub)), hn::Set(d, view.xScaleSub));
+  VF py = hn::Div(hn::Set(d, float(view.yCenterSub(y)) - view.yShiftSub), hn::Set(d, view.yScaleSub));
+  if (view.perspective) {
+    px = hn::Mul(px, zView);
+    py = hn::Mul(py, zView);
+  }
+  hn::StoreU(hn::IfThenElseZero(covered, px), d, out.position[0].row(y) + x);
+  hn::StoreU(hn::IfThenElseZero(covered, py), d, out.position[1].row(y) + x);
+  hn::StoreU(hn::IfThenElseZero(covered, hn::Sub(zero, zView)), d, out.position[2].row(y) + x);
+}
+
+// Depth, position and triangle ids need nothing but the visibility: whole rows, as memory likes it.
+HWY_INLINE void storeVisibility(const View& view, const TileBuffers& tile, GBuffer& out) {
+  const DF d;
+  const DU du;
+  for (int top = 0; top < tile.height; top += kBlock) {
+    const int rows = std::min(kBlock, tile.height - top);
     for (int column = 0; column < tile.width; column += int(hn::Lanes(d))) {
-      const int x = tile.x + column;
-      const VU id = hn::Load(du, ids + column);
-      const VF key = hn::Load(d, keys + column);
-      const MF covered = hn::RebindMask(d, hn::Ne(id, hn::Set(du, kNoTriangle)));
-      // 0 - key: a plain negation would give two kinds of zero.
-      const VF zView = view.perspective ? hn::Div(one, key) : hn::Sub(zero, key);
-      if (!out.triangle.empty()) hn::StoreU(id, du, out.triangle.row(y) + x);
-      if (!out.depth.empty()) hn::StoreU(hn::IfThenElse(covered, zView, infinity), d, out.depth.row(y) + x);
-      if (out.position[0].empty()) continue;
-      const VF xc = hn::ConvertTo(d, hn::Add(hn::Set(di, view.xCenterSub(x)), hn::ShiftLeft<kSubBits>(hn::Iota(di, 0))));
-      VF px = hn::Div(hn::Sub(xc, hn::Set(d, view.xShiftSub)), hn::Set(d, view.xScaleSub));
-      VF py = hn::Div(hn::Set(d, float(view.yCenterSub(y)) - view.yShiftSub), hn::Set(d, view.yScaleSub));
-      if (view.perspective) {
-        px = hn::Mul(px, zView);
-        py = hn::Mul(py, zView);
-      }
-      hn::StoreU(hn::IfThenElseZero(covered, px), d, out.position[0].row(y) + x);
-      hn::StoreU(hn::IfThenElseZero(covered, py), d, out.position[1].row(y) + x);
-      hn::StoreU(hn::IfThenElseZero(covered, hn::Sub(zero, zView)), d, out.position[2].row(y) + x);
+      const int at = tile.at(column, top);
+      VF keys[kBlock];
+      VU ids[kBlock];
+      rowsOfBlocks(d, tile.key + at, keys);
+      rowsOfBlocks(du, tile.id + at, ids);
+      for (int row = 0; row < rows; ++row) storeVisible(view, keys[row], ids[row], tile.x + column, tile.y + top + row, out);
     }
   }
 }
