@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <functional>
@@ -17,6 +16,7 @@
 #include "obscura/apps/signals.h"
 #include "obscura/engine/gltf.h"
 #include "obscura/raster/parallel.h"
+#include "obscura/raster/stopwatch.h"
 
 namespace obscura::apps {
 namespace {
@@ -36,18 +36,6 @@ constexpr const char* kExamples = R"(Examples:
 
 Exit codes: 0 done, 2 usage, 3 bad input (also: nothing to be seen), 4 cannot write, 128+n ended by signal n.
 )";
-
-class Stopwatch {
- public:
-  double lap() {
-    const Clock::time_point now = Clock::now();
-    return std::chrono::duration<double, std::milli>(now - std::exchange(last_, now)).count();
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point last_ = Clock::now();
-};
 
 std::string aovHelp() {
   std::string s = "what to write and to digest, comma separated or repeated; all: every one [color]";
@@ -232,7 +220,7 @@ int RenderCommand::run() {
     return fail(error);
   };
   RunTimings run;
-  Stopwatch watch;
+  raster::Stopwatch watch;
 
   progress.step("loading");
   const Result<engine::Scene> scene = load(needsTextures(aovs));

@@ -1,7 +1,6 @@
 #include "obscura/engine/frame.h"
 
 #include <algorithm>
-#include <chrono>
 #include <new>
 #include <stdexcept>
 #include <utility>
@@ -11,6 +10,7 @@
 #include "obscura/post/transfer_samples.h"
 #include "obscura/raster/float_environment.h"
 #include "obscura/raster/parallel.h"
+#include "obscura/raster/stopwatch.h"
 #include "obscura/raster/view.h"
 
 namespace obscura::engine {
@@ -68,15 +68,6 @@ const char* wrongSetting(const FrameSettings& s) {
       return "colours must be 0 or more and finite";
   return nullptr;
 }
-
-struct Stopwatch {
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point last = Clock::now();
-  double lap() {
-    const Clock::time_point now = Clock::now();
-    return std::chrono::duration<double, std::milli>(now - std::exchange(last, now)).count();
-  }
-};
 
 }  // namespace
 
@@ -200,7 +191,7 @@ post::TransferStatistics Renderer::State::transferSums(post::TransferInput& in, 
 
 // O and W of the part that is given, and the G-buffer cut down to it.
 void Renderer::State::drawTransfer(const FrameSettings& s, const Needs& needs, Frame& out) {
-  Stopwatch watch;
+  raster::Stopwatch watch;
   raster::GBuffer& g = more() ? drawn : out.g;
   if (needs.sums) {
     post::TransferInput in{&g, post::makeProjector(s.camera, s.width, s.height, window), s.transfer, post::transferSamples(s.transfer)};
@@ -257,7 +248,7 @@ Result<Done> Renderer::render(const Scene& scene, const FrameSettings& settings,
   Frame& drawn = supersampled ? s.subpixels : frame;
   const Needs needs = needsOf(scene, settings);
   FrameTimings timings;
-  Stopwatch total, watch;
+  raster::Stopwatch total, watch;
 
   const bool normalIsAov = std::find(settings.aovs.begin(), settings.aovs.end(), Aov::Normal) != settings.aovs.end();
   s.overNormals = supersampled && needs.w && !normalIsAov;

@@ -1,7 +1,6 @@
 #include "obscura/raster/rasterizer.h"
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 #include <map>
 #include <stdexcept>
@@ -18,6 +17,7 @@
 #include "obscura/raster/resolve.h"
 #include "obscura/raster/setup.h"
 #include "obscura/raster/srgb.h"
+#include "obscura/raster/stopwatch.h"
 #include "obscura/raster/tile.h"
 #include "obscura/raster/transform.h"
 #include "obscura/raster/view.h"
@@ -48,15 +48,6 @@ int bitsOfTile(int tile) {
     if (tile == 1 << bits) return bits;
   throw std::invalid_argument("obscura raster: tile of " + std::to_string(tile) + " pixels, not 16, 32 or 64");
 }
-
-struct Stopwatch {
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point last = Clock::now();
-  double lap() {
-    const Clock::time_point now = Clock::now();
-    return std::chrono::duration<double, std::milli>(now - std::exchange(last, now)).count();
-  }
-};
 
 // Clusters of meshes that came without.
 void clusterThoseWithout(std::vector<Draw>& draws, std::map<const MeshView*, Clusters>& made) {
