@@ -174,7 +174,6 @@ TEST_CASE("cli: crops of a frame with a border, put together, are the file of th
     render({"-o", w / "part.npy", "-o", w / "part.exr", "--crop", crop});
     const engine::Image part = imageAt(w / "part.npy");
     REQUIRE((part.width == width && part.height == height));
-    REQUIRE(imageAt(w / "part.exr").bytes == part.bytes);
     for (int row = 0; row < height; ++row)
       std::memcpy(stitched.row<float>(y + row) + x * 3, part.row<float>(row), size_t(width) * 12);
     // Attributes of an EXR: name, type, size in bytes, value; a box is xMin, yMin, xMax, yMax.
