@@ -272,6 +272,9 @@ void addAmbient(CLI::App& app, FrameOptions& o) {
   addLength(app, "--bias", true, o.bias, "how deep behind a surface counts as inside",
             fraction(engine::kDefaultBias, "R"))
       ->group(group);
+  addChoice(app, "--silhouette-bound", onOff, o.transfer.silhouetteBound,
+            "what lies R or more before a test point does not block it; off: it does, and casts false silhouettes")
+      ->group(group);
   addChoice(app, "--interleave", onOff, o.transfer.interleave, "other rays in each pixel of a 4x4 pattern")
       ->group(group);
   addChoice(app, "--filter", onOff, o.transfer.filter, "4x4 box over pixels of nearly the same depth")->group(group);

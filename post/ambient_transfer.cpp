@@ -24,7 +24,7 @@ namespace HWY_NAMESPACE {
 template <bool kPerspective>
 struct DepthMap {
   const float* depth;
-  VF xScale, yScale, xCenter, yCenter, firstX, firstY, lastX, lastY, bias, radius, zNear;
+  VF xScale, yScale, xCenter, yCenter, firstX, firstY, lastX, lastY, bias, deepest, zNear;
   VI stride, origin;  // origin: element of the image's pixel (0, 0), were it in the G-buffer, times -1
   bool negative;      // the G-buffer reaches beyond the image's upper or left edge
 
@@ -38,7 +38,8 @@ struct DepthMap {
     lastX = hn::Set(d, float(p.xFirst + p.width - 1)), lastY = hn::Set(d, float(p.yFirst + p.height - 1));
     origin = hn::Set(DI(), p.yFirst * int32_t(in.g->depth.stride()) + p.xFirst);
     negative = p.xFirst < 0 || p.yFirst < 0;
-    bias = hn::Set(d, in.settings.bias), radius = hn::Set(d, in.settings.radius), zNear = hn::Set(d, p.zNear);
+    bias = hn::Set(d, in.settings.bias), zNear = hn::Set(d, p.zNear);
+    deepest = hn::Set(d, in.settings.silhouetteBound ? in.settings.radius : std::numeric_limits<float>::infinity());
     stride = hn::Set(DI(), int32_t(in.g->depth.stride()));
   }
 
@@ -57,10 +58,11 @@ struct DepthMap {
     return hn::Sub(hn::Add(hn::Mul(floorOf(v, firstY, lastY), stride), floorOf(u, firstX, lastX)), origin);
   }
 
-  // Inner exactly when bias < z - z* < R; the upper bound keeps far foreground objects from casting silhouettes.
+  // Inner exactly when bias < z - z* < R; the upper bound keeps far foreground objects from casting silhouettes. Without
+  // it the difference need only be finite.
   HWY_INLINE MF inner(VF z, VI texel) const {
     const VF behind = hn::Sub(z, hn::GatherIndex(DF(), depth, texel));
-    return hn::And(hn::And(hn::Gt(behind, bias), hn::Lt(behind, radius)), hn::Gt(z, zNear));
+    return hn::And(hn::And(hn::Gt(behind, bias), hn::Lt(behind, deepest)), hn::Gt(z, zNear));
   }
 
  private:
@@ -169,7 +171,7 @@ class Kernel {
     fetchAhead(x, y);
     Pixels pixels[kVectors];
     for (int v = 0; v < kVectors; ++v) {
-      // A ray from infinity meets nothing: z - z* < R never holds.
+      // A ray from infinity meets nothing: z - z* is not finite.
       const VF z = hn::IfThenElse(seen[v], hn::LoadU(d, g_.depth.row(y) + x + v * kLanes), infinity);
       place(pixels[v], x + v * kLanes, y, z);
       setFrame(pixels[v]);

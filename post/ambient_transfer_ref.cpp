@@ -62,7 +62,8 @@ void shade(const TransferInput& in, int x, int y, TransferSums& out) {
       const glm::vec3 scPos = cPos + (T1 * o.x + B1 * o.y + N * o.z);
       occluder = project(projector, scPos);
       const float behind = scPos.z - g.depth.at(occluder.x, occluder.y);
-      outer = !(behind > s.bias && behind < s.radius && scPos.z > projector.zNear);
+      const float deepest = s.silhouetteBound ? s.radius : std::numeric_limits<float>::infinity();
+      outer = !(behind > s.bias && behind < deepest && scPos.z > projector.zNear);
     }
     if (outer) num += 1;
     else if (s.albedo == TransferAlbedo::Neighbour)

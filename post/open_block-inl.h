@@ -9,6 +9,7 @@
 // rotation; g points into the plane, so that g . N < 0 and rays that rise from it lower l.
 // Orthographic: -z* <= a u + b v + c, hence z - z* <= l(p) = g . p + k, g = (a xScale, b yScale, 1),
 // k = a xCenter + b yCenter + c', which must not exceed the bias.
+// The upper bound of the containment test plays no part: z - z* <= bias is outside with it and without.
 #if defined(OBSCURA_POST_OPEN_BLOCK_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef OBSCURA_POST_OPEN_BLOCK_INL_H_
 #undef OBSCURA_POST_OPEN_BLOCK_INL_H_

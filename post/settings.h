@@ -27,6 +27,7 @@ struct AmbientSettings {
   int steps = 1;                 // m, 1 ... 4 test points per ray
   float radius = 0.5f;           // R, scene units, > 0
   float bias = 0.005f;           // scene units, >= 0: how far behind the depth map a point must be to be inside
+  bool silhouetteBound = true;   // what lies R or more behind the depth map is outside: no false silhouettes; false: inside
   bool interleave = true;        // rotate the set from pixel to pixel, in a 4x4 pattern
   bool filter = true;            // 4x4 box over the pixels of nearly the same depth
   float filterThreshold = 0.1f;  // scene units, > 0

@@ -195,6 +195,15 @@ TEST_CASE("false silhouettes: a foreground object farther than R away does not d
   forEach(c.frame.g, [&](int x, int y) {
     if (c.frame.g.instance.at(x, y) == 0) REQUIRE(c.frame.transfer.obscurance.at(x, y) == 1);
   });
+  // Without the bound it does, as does all that is before the background.
+  AmbientSettings unbounded = manySamples(Membership::Linear, 1.0f);
+  unbounded.silhouetteBound = false;
+  c.run(unbounded);
+  double darkest = 1;
+  forEach(c.frame.g, [&](int x, int y) {
+    if (c.frame.g.instance.at(x, y) == 0) darkest = std::min(darkest, double(c.frame.transfer.obscurance.at(x, y)));
+  });
+  CHECK(darkest < 0.9);
   // With R beyond the gap the object counts as an occluder, as the paper's figure shows.
   c.run(manySamples(Membership::Linear, 2.5f));
   double least = 1;

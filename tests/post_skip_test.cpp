@@ -52,6 +52,7 @@ AmbientSettings settingsOf(uint32_t seed) {
   s.steps = seed % 5 == 0 ? random.integer(2, 4) : 1;
   s.radius = random.real(0.1f, 0.8f);
   s.bias = seed % 4 == 3 ? 0 : s.radius * random.real(0, 0.02f);
+  s.silhouetteBound = seed % 3 != 0;
   s.filter = seed % 7 != 0;
   s.interleave = seed % 6 != 0;
   s.filterThreshold = s.radius / 5;

@@ -20,6 +20,7 @@ AmbientSettings settingsOf(uint32_t seed) {
   s.steps = random.integer(1, 4);
   s.radius = random.real(0.1f, 2);
   s.bias = random.real(0, 0.02f);
+  s.silhouetteBound = seed % 3 != 1;
   s.interleave = seed % 3 != 0;
   s.filter = seed % 7 != 0;
   s.filterThreshold = random.real(0.05f, 0.5f);
@@ -110,6 +111,7 @@ TEST_CASE("post: a twin that computes anything else is noticed") {
   };
   CHECK(with([](AmbientSettings& m) { m.steps = 2; }));
   CHECK(with([](AmbientSettings& m) { m.bias = 0.02f; }));
+  CHECK(with([](AmbientSettings& m) { m.silhouetteBound = false; }));
   CHECK(with([](AmbientSettings& m) { m.interleave = false; }));
   CHECK(with([](AmbientSettings& m) { m.filter = false; }));
   CHECK(with([](AmbientSettings& m) { m.filterThreshold = 0.05f; }));
