@@ -245,6 +245,8 @@ void addView(CLI::App& app, FrameOptions& o) {
 }
 
 void addAmbient(CLI::App& app, FrameOptions& o) {
+  using post::Estimator;
+  using post::FilterGuide;
   using post::Membership;
   using post::Occlusion;
   using post::TransferAlbedo;
@@ -275,9 +277,16 @@ void addAmbient(CLI::App& app, FrameOptions& o) {
   addChoice(app, "--silhouette-bound", onOff, o.transfer.silhouetteBound,
             "what lies R or more before a test point does not block it; off: it does, and casts false silhouettes")
       ->group(group);
+  addChoice(app, "--estimator", {{"paper", Estimator::Paper}, {"sobol", Estimator::Sobol}, {"box", Estimator::Box}},
+            o.transfer.estimator,
+            "where the rays come from: one set for all pixels, a Sobol net dealt to a 4x4 pattern, or one that suits its box")
+      ->group(group);
   addChoice(app, "--interleave", onOff, o.transfer.interleave, "other rays in each pixel of a 4x4 pattern")
       ->group(group);
   addChoice(app, "--filter", onOff, o.transfer.filter, "4x4 box over pixels of nearly the same depth")->group(group);
+  addChoice(app, "--filter-guide", {{"depth", FilterGuide::Depth}, {"plane", FilterGuide::Plane}}, o.transfer.filterGuide,
+            "which pixels the filter adds up: those of nearly the same depth, or of the same plane and normal")
+      ->group(group);
   addLength(app, "--filter-threshold", false, o.filterThreshold, "difference of depth that the filter stops at",
             fraction(engine::kDefaultFilterThreshold, "R"))->group(group);
 }

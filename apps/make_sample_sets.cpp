@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <string>
 
+#include "obscura/post/make_dealt_seed.h"
 #include "obscura/post/make_sample_set.h"
 #include "obscura/post/sample_sets.h"
 #include "obscura/raster/exact_math.h"
@@ -39,6 +40,8 @@ std::string floatLiteral(double value) {
 constexpr const char* kHead =
     R"(// Made by obscura-make-sample-sets: change post/make_sample_set.cpp and run it again, not this file.
 #include "obscura/post/sample_sets.h"
+
+#include "obscura/post/dealt_samples.h"
 
 namespace obscura::post {
 namespace {
@@ -84,6 +87,8 @@ raster::Span<const glm::vec3> sampleSet(int n) {
 const std::array<uint8_t, 16>& rotationOrder() { return kRotationOrder; }
 const std::array<glm::vec2, 16>& rotations() { return kRotations; }
 
+uint32_t boxSeed(int n) { return kBoxSeeds[n - 1]; }
+
 }  // namespace obscura::post)";
 
 }  // namespace
@@ -110,6 +115,11 @@ int main() {
     pairs.add("glm::vec2(" + floatLiteral(turned[j >> 2][0]) + ", " + floatLiteral(turned[j >> 2][1]) + ")");
   }
   pairs.end();
+
+  std::printf("\nconstexpr uint16_t kBoxSeeds[kMaxSamples] = {\n");
+  Wrapped seeds;
+  for (int n = 1; n <= post::kMaxSamples; ++n) seeds.add(std::to_string(post::makeBoxSeed(n)));
+  seeds.end();
   std::puts(kTail);
   return std::fflush(stdout) == 0 && std::ferror(stdout) == 0 ? 0 : 4;
 }

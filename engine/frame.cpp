@@ -251,7 +251,8 @@ Result<Done> Renderer::render(const Scene& scene, const FrameSettings& settings,
   raster::Stopwatch total, watch;
 
   const bool normalIsAov = std::find(settings.aovs.begin(), settings.aovs.end(), Aov::Normal) != settings.aovs.end();
-  s.overNormals = supersampled && needs.w && !normalIsAov;
+  const bool normalIsRead = settings.transfer.filter && settings.transfer.filterGuide == post::FilterGuide::Plane;
+  s.overNormals = supersampled && needs.w && !normalIsAov && !normalIsRead;
   s.overSums = supersampled;
   drawn.timings = {};
   drawn.transferStatistics = {};

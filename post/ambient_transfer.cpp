@@ -13,6 +13,7 @@
 
 #include "obscura/post/open_block-inl.h"
 #include "obscura/post/ray_hits-inl.h"
+#include "obscura/post/ray_points-inl.h"
 #include "obscura/post/sample_sets.h"
 #include "obscura/post/vector-inl.h"
 
@@ -109,11 +110,11 @@ HWY_INLINE void turnFrame(Pixels& at, VF c, VF s) {
 constexpr int kSegment = 16;
 static_assert(DepthBounds::kCellWidth == kSegment, "a segment lies in one block");
 
-template <bool kPerspective, bool kOneStep, bool kNeighbour>
+template <class Points, bool kPerspective, bool kOneStep, bool kNeighbour>
 class Kernel {
  public:
   Kernel(const TransferInput& in, TransferSums& out)
-      : in_(in), g_(*in.g), out_(out), map_(in), points_(pointsOf(in)), reach_(points_) {}
+      : in_(in), g_(*in.g), out_(out), map_(in), points_(in), reach_(points_.all()) {}
 
   TransferStatistics rows(int y0, int y1) {
     if (in_.bounds) blocks_.resize(size_t(in_.bounds->c.width()));
@@ -129,13 +130,6 @@ class Kernel {
   }
 
  private:
-  static std::vector<glm::vec3> pointsOf(const TransferInput& in) {
-    std::vector<glm::vec3> points;
-    for (const glm::vec3& offset : in.offsets)
-      for (int k = 1; k <= in.settings.steps; ++k) points.push_back(offset * (float(k) / float(in.settings.steps)));
-    return points;
-  }
-
   // The pattern is that of the whole image.
   void startRow(int y) {
     const Projector& p = in_.projector;
@@ -144,6 +138,7 @@ class Kernel {
       cosines_[x] = r.x;
       sines_[x] = r.y;
     }
+    points_.startRow(y + p.yFirst);
     yRay_ = hn::Set(DF(), (float(y + p.yFirst) + 0.5f - p.yCenter) * p.yInverse);
   }
 
@@ -192,8 +187,8 @@ class Kernel {
     }
     statistics_.sampled += seenCount;
     for (int v = 0; v < kVectors; ++v) {
-      turnFrame(pixels[v], hn::LoadU(d, cosines_ + v * kLanes), hn::LoadU(d, sines_ + v * kLanes));
-      const VF outer = outerRays(pixels[v]);
+      if (Points::kTurned) turnFrame(pixels[v], hn::LoadU(d, cosines_ + v * kLanes), hn::LoadU(d, sines_ + v * kLanes));
+      const VF outer = outerRays(pixels[v], x + v * kLanes);
       open &= uint8_t(hn::AllTrue(d, hn::Eq(outer, all)));
       hn::StoreU(outer, d, numerator + v * kLanes);
       if (kNeighbour) {
@@ -224,21 +219,21 @@ class Kernel {
   }
 
   // Counts the rays that stay outside; with kNeighbour also notes what the others meet.
-  HWY_INLINE VF outerRays(const Pixels& at) {
+  HWY_INLINE VF outerRays(const Pixels& at, int x) {
     const DF d;
     const DI di;
     const VF one = hn::Set(d, 1.0f);
-    const size_t samples = in_.offsets.size(), steps = kOneStep ? 1 : size_t(in_.settings.steps);
+    const size_t samples = size_t(in_.settings.samples), steps = kOneStep ? 1 : size_t(in_.settings.steps);
     const size_t firstRay = size_t(pendingCount_) * samples * Hits::kStride;
-    const glm::vec3* point = points_.data();
+    size_t point = 0;
     VF outer = hn::Zero(d);
     for (size_t i = 0; i < samples; ++i) {
       MF hit = hn::MaskFromVec(hn::Zero(d));
       VI met = hn::Zero(di);
       for (size_t k = 0; k < steps; ++k, ++point) {
-        const VF X = hn::Set(d, point->x), Y = hn::Set(d, point->y), Z = hn::Set(d, point->z);
+        const V3 xyz = points_.at(point, x);
         auto shifted = [&](VF p, VF t, VF b, VF n) HWY_ATTR {
-          return hn::Add(p, hn::Add(hn::Add(hn::Mul(X, t), hn::Mul(Y, b)), hn::Mul(Z, n)));
+          return hn::Add(p, hn::Add(hn::Add(hn::Mul(xyz.x, t), hn::Mul(xyz.y, b)), hn::Mul(xyz.z, n)));
         };
         const V3 p{shifted(at.position.x, at.t.x, at.b.x, at.n.x), shifted(at.position.y, at.t.y, at.b.y, at.n.y),
                    shifted(at.position.z, at.t.z, at.b.z, at.n.z)};
@@ -254,7 +249,7 @@ class Kernel {
   }
 
   void subtractPending(int y) {
-    const size_t rays = in_.offsets.size() * Hits::kStride;
+    const size_t rays = size_t(in_.settings.samples) * Hits::kStride;
     for (int v = 0; v < pendingCount_; ++v) {
       float* denominator[3];
       for (int c = 0; c < 3; ++c) denominator[c] = out_.denominator[c].row(y) + pending_[v];
@@ -267,22 +262,23 @@ class Kernel {
   const raster::GBuffer& g_;
   TransferSums& out_;
   const DepthMap<kPerspective> map_;
-  const std::vector<glm::vec3> points_;  // in the frame (T', B', N): those of a ray one after the other
+  Points points_;
   const Reach reach_;
   std::vector<OpenBlock> blocks_;  // of the row of cells
   TransferStatistics statistics_;
   HWY_ALIGN float cosines_[kSegment], sines_[kSegment];  // the row's rotations
   VF yRay_;
   static constexpr int kPendingMost = 16;
-  const int pendingMost_ = std::min(kPendingMost, int(2 * kMaxSamples / std::max<size_t>(in_.offsets.size(), 1)));
+  const int pendingMost_ = std::min(kPendingMost, 2 * kMaxSamples / std::max(in_.settings.samples, 1));
   int pendingCount_ = 0, pending_[kPendingMost];  // vectors whose hits are noted: their x
   Hits hits_;
 };
 
 template <bool kPerspective, bool kOneStep, bool kNeighbour>
 TransferStatistics transferRows(const TransferInput& in, int y0, int y1, TransferSums& out) {
-  Kernel<kPerspective, kOneStep, kNeighbour> kernel(in, out);
-  return kernel.rows(y0, y1);
+  if (in.settings.estimator != Estimator::Paper)
+    return Kernel<DealtPoints, kPerspective, kOneStep, kNeighbour>(in, out).rows(y0, y1);
+  return Kernel<SharedPoints, kPerspective, kOneStep, kNeighbour>(in, out).rows(y0, y1);
 }
 
 template <bool kPerspective, bool kOneStep>

@@ -36,7 +36,7 @@ struct TransferInput {
   const raster::GBuffer* g = nullptr;
   Projector projector;
   AmbientSettings settings;
-  std::vector<glm::vec3> offsets;  // transferSamples(settings)
+  std::vector<glm::vec3> offsets;  // transferSamples(settings): n, or 16 n
   // Of this depth and projector, whole: where they show that every ray stays outside, none is followed. Null: all are.
   const DepthBounds* bounds = nullptr;
 };

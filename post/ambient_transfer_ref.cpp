@@ -49,12 +49,14 @@ void shade(const TransferInput& in, int x, int y, TransferSums& out) {
   T = square > 1e-12f ? T / std::sqrt(square) : glm::vec3(1, 0, 0);
   const glm::vec3 B(N.y * T.z - N.z * T.y, N.z * T.x - N.x * T.z, N.x * T.y - N.y * T.x);
 
-  // Interleaved sampling: rows (c, s, 0) and (s, -c, 0) of the noise map turn T and B.
-  const glm::vec2 r1 = s.interleave ? rotations()[size_t((xImage & 3) + 4 * (yImage & 3))] : glm::vec2(1, 0);
-  const glm::vec3 T1 = T * r1.x + B * r1.y, B1 = T * r1.y - B * r1.x;
+  // Interleaved sampling: rows (c, s, 0) and (s, -c, 0) of the noise map turn T and B; dealt samples are used as they are.
+  const size_t inPattern = size_t((xImage & 3) + 4 * (yImage & 3)), samples = size_t(s.samples);
+  const bool dealt = s.estimator != Estimator::Paper;
+  const glm::vec2 r1 = s.interleave ? rotations()[inPattern] : glm::vec2(1, 0);
+  const glm::vec3 T1 = dealt ? T : T * r1.x + B * r1.y, B1 = dealt ? B : T * r1.y - B * r1.x;
 
-  for (const glm::vec3& xyz : in.offsets) {
-    if (empty) break;
+  for (size_t i = 0; i < samples && !empty; ++i) {
+    const glm::vec3 xyz = in.offsets[dealt ? inPattern * samples + i : i];
     bool outer = true;
     Texel occluder{};
     for (int k = 1; k <= s.steps && outer; ++k) {

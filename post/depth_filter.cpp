@@ -10,6 +10,7 @@
 
 #include <hwy/cache_control.h>
 
+#include "obscura/post/filter_guide-inl.h"
 #include "obscura/post/vector-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -21,33 +22,18 @@ struct Sums {
   VF numerator, denominator[3], count;
 };
 
-// Where the rows of a window are read; indices 0 ... 3 stand for y - 2 ... y + 1, clamped at the image's border.
-struct Window {
-  const float *depth[4], *numerator[4], *denominator[3][4];
-  const uint8_t* open[4];
-
-  // All rays of all windows of the 16 pixels from 16 segment on stay outside: O and W are 1 whichever pixels count.
-  HWY_INLINE bool isOpen(int segment, int segments, bool filter) const {
-    if (!filter) return open[2][segment];
-    const int before = std::max(segment - 1, 0), after = std::min(segment + 1, segments - 1);
-    int all = 1;
-    for (int j = 0; j < 4; ++j) all &= open[j][before] & open[j][segment] & open[j][after];
-    return all;
-  }
-};
-
 // kChannels of the denominator are summed: 3 for the neighbours' W, else 0. kInside: no lane's window leaves the row.
 // The order of the sum is by rows, then columns.
-template <int kChannels, bool kInside>
-HWY_INLINE Sums sumWindow(const Window& window, int width, int x, VF threshold) {
+template <class Guide, int kChannels, bool kInside>
+HWY_INLINE Sums sumWindow(const Guide& guide, const Window& window, int width, int x) {
   const DF d;
   const DI di;
   const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  const VF z = hn::LoadU(d, window.depth[2] + x);
   Sums s{zero, {zero, zero, zero}, zero};
   VI columns[4];
   for (int i = 0; i < 4; ++i)
     columns[i] = hn::Min(hn::Max(hn::Iota(di, x + i - 2), hn::Zero(di)), hn::Set(di, width - 1));
+  const typename Guide::Pixel pixel(guide, window, x, columns);
 #if HWY_COMPILER_GCC_ACTUAL  // clang unrolls these by itself
 #pragma GCC unroll 4
 #endif
@@ -59,7 +45,7 @@ HWY_INLINE Sums sumWindow(const Window& window, int width, int x, VF threshold) 
       auto read = [&](const float* row) HWY_ATTR {
         return kInside ? hn::LoadU(d, row + x + i - 2) : hn::GatherIndex(d, row, columns[i]);
       };
-      MF counts = hn::Lt(hn::Abs(hn::Sub(z, read(window.depth[j]))), threshold);
+      MF counts = pixel.counts(window, j, i, read);
       if (i == 2 && j == 2) counts = hn::Eq(zero, zero);  // the pixel itself
       // Adding nothing and adding 0 are the same here (no sum is ever -0); g++ makes one masked addition of the former.
       auto add = [&](VF& sum, VF v) HWY_ATTR { sum = hn::IfThenElse(counts, hn::Add(sum, v), sum); };
@@ -74,20 +60,21 @@ HWY_INLINE Sums sumWindow(const Window& window, int width, int x, VF threshold) 
 }
 
 // The row after the next, whose first use would wait: there are too many planes for the hardware to keep ahead of.
-template <int kChannels>
+template <class Guide, int kChannels>
 HWY_INLINE void fetchAhead(const raster::GBuffer& g, const TransferSums& sums, int x, int y) {
   const int row = std::min(y + 3, g.height - 1);
   hwy::Prefetch(g.depth.row(row) + x);
   hwy::Prefetch(sums.numerator.row(row) + x);
+  for (int c = 0; Guide::kNormals && c < 3; ++c) hwy::Prefetch(g.normal[c].row(row) + x);
   for (int c = 0; c < kChannels; ++c) hwy::Prefetch(sums.denominator[c].row(row) + x);
 }
 
-template <int kChannels>
+template <class Guide, int kChannels>
 void filterRow(const TransferInput& in, const TransferSums& sums, int y, Transfer& out) {
   const DF d;
   const raster::GBuffer& g = *in.g;
   const VF one = hn::Set(d, 1.0f), rays = hn::Set(d, float(in.settings.samples));
-  const VF threshold = hn::Set(d, in.settings.filterThreshold);
+  const Guide guide(in);
   const VF infinity = hn::Set(d, std::numeric_limits<float>::infinity());
   Window window;
   for (int j = 0; j < 4; ++j) {
@@ -96,6 +83,8 @@ void filterRow(const TransferInput& in, const TransferSums& sums, int y, Transfe
     window.numerator[j] = sums.numerator.row(row);
     window.open[j] = sums.open.row(row);
     for (int c = 0; c < kChannels; ++c) window.denominator[c][j] = sums.denominator[c].row(row);
+    for (int c = 0; Guide::kNormals && c < 3; ++c) window.normal[c][j] = g.normal[c].row(row);
+    window.yRay[j] = (float(row + in.projector.yFirst) + 0.5f - in.projector.yCenter) * in.projector.yInverse;
   }
   float* obscurance = out.obscurance.empty() ? nullptr : out.obscurance.row(y);
   float* w[3] = {};
@@ -115,10 +104,10 @@ void filterRow(const TransferInput& in, const TransferSums& sums, int y, Transfe
     }
     Sums s;
     if (in.settings.filter) {
-      fetchAhead<kChannels>(g, sums, x, y);
+      fetchAhead<Guide, kChannels>(g, sums, x, y);
       const bool inside = x >= 2 && x + int(hn::Lanes(d)) < g.width;
-      s = inside ? sumWindow<kChannels, true>(window, g.width, x, threshold)
-                 : sumWindow<kChannels, false>(window, g.width, x, threshold);
+      s = inside ? sumWindow<Guide, kChannels, true>(guide, window, g.width, x)
+                 : sumWindow<Guide, kChannels, false>(guide, window, g.width, x);
     } else {
       s.numerator = hn::LoadU(d, window.numerator[2] + x);
       s.count = one;
@@ -137,9 +126,16 @@ void filterRow(const TransferInput& in, const TransferSums& sums, int y, Transfe
   }
 }
 
-void DepthFilter(const TransferInput& in, const TransferSums& sums, int y0, int y1, Transfer& out) {
+template <class Guide>
+void filterRows(const TransferInput& in, const TransferSums& sums, int y0, int y1, Transfer& out) {
   const bool neighbour = in.settings.albedo == TransferAlbedo::Neighbour && !out.w[0].empty();
-  for (int y = y0; y < y1; ++y) neighbour ? filterRow<3>(in, sums, y, out) : filterRow<0>(in, sums, y, out);
+  for (int y = y0; y < y1; ++y) neighbour ? filterRow<Guide, 3>(in, sums, y, out) : filterRow<Guide, 0>(in, sums, y, out);
+}
+
+void DepthFilter(const TransferInput& in, const TransferSums& sums, int y0, int y1, Transfer& out) {
+  if (!in.settings.filter || in.settings.filterGuide == FilterGuide::Depth) filterRows<DepthGuide>(in, sums, y0, y1, out);
+  else if (in.projector.perspective) filterRows<PlaneGuide<true>>(in, sums, y0, y1, out);
+  else filterRows<PlaneGuide<false>>(in, sums, y0, y1, out);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -1,6 +1,6 @@
-// In:  the transfer's sums, depth (and albedo, for the own-albedo W).
-// Out: obscurance O and ambient transfer W per pixel: the 4x4 box over pixels of nearly the same depth, then one
-//      quotient of sums (long paper, sections 4.1 and 4.2).
+// In:  the transfer's sums, depth (and albedo, for the own-albedo W; normals, for FilterGuide::Plane).
+// Out: obscurance O and ambient transfer W per pixel: the 4x4 box over pixels of nearly the same depth or of the same
+//      plane, then one quotient of sums (long paper, sections 4.1 and 4.2).
 #pragma once
 
 #include "obscura/post/ambient_transfer.h"
@@ -17,8 +17,13 @@ struct Transfer {
 
 Transfer makeTransfer(int width, int height, bool obscurance, bool w, Transfer used = {});
 
-// Window x-2 ... x+1, y-2 ... y+1, clamped at the border. A neighbour counts if |z - z'| < threshold; the pixel itself
-// always does. Without AmbientSettings::filter only the pixel itself. Empty pixels have O = W = 1.
+// FilterGuide::Plane: a neighbour counts if |N . (p' - p)| < kPlaneDistance R and N . N' > kNormalCosine, p and p' the
+// points seen, N and N' their normals. Differs from the papers, whose depth difference leaves few pixels of a window on a
+// surface seen at a grazing angle, and mixes those of an edge between two faces.
+constexpr float kPlaneDistance = 0.1f, kNormalCosine = 0.9f;
+
+// Window x-2 ... x+1, y-2 ... y+1, clamped at the border. FilterGuide::Depth: a neighbour counts if |z - z'| < threshold.
+// The pixel itself always does. Without AmbientSettings::filter only the pixel itself. Empty pixels have O = W = 1.
 void depthFilter(const TransferInput& in, const TransferSums& sums, int y0, int y1, Transfer& out, raster::Target target);
 void depthFilterRef(const TransferInput& in, const TransferSums& sums, int y0, int y1, Transfer& out);  // the scalar twin
 

@@ -9,6 +9,25 @@
 namespace obscura::post {
 namespace {
 
+// N . p of the point seen in a pixel, N in the papers' camera space.
+float heightOver(const glm::vec3& N, const TransferInput& in, int x, int y) {
+  const Projector& p = in.projector;
+  const float z = in.g->depth.at(x, y);
+  const float xRay = (float(x + p.xFirst) + 0.5f - p.xCenter) * p.xInverse;
+  const float yRay = (float(y + p.yFirst) + 0.5f - p.yCenter) * p.yInverse;
+  return p.perspective ? z * (N.x * xRay + N.y * yRay + N.z) : N.x * xRay + N.y * yRay + N.z * z;
+}
+
+bool counts(const TransferInput& in, int x, int y, int u, int v) {
+  const raster::GBuffer& g = *in.g;
+  if (in.settings.filterGuide == FilterGuide::Depth)
+    return std::fabs(g.depth.at(x, y) - g.depth.at(u, v)) < in.settings.filterThreshold;
+  const auto normal = [&](int i, int j) { return glm::vec3(g.normal[0].at(i, j), g.normal[1].at(i, j), -g.normal[2].at(i, j)); };
+  const glm::vec3 N = normal(x, y), other = normal(u, v);
+  return std::fabs(heightOver(N, in, u, v) - heightOver(N, in, x, y)) < kPlaneDistance * in.settings.radius &&
+         N.x * other.x + N.y * other.y + N.z * other.z > kNormalCosine;
+}
+
 void filterPixel(const TransferInput& in, const TransferSums& sums, int x, int y, Transfer& out) {
   const raster::GBuffer& g = *in.g;
   const float z = g.depth.at(x, y);
@@ -18,7 +37,7 @@ void filterPixel(const TransferInput& in, const TransferSums& sums, int x, int y
   for (int j = y - before; j <= y + after; ++j)
     for (int i = x - before; i <= x + after; ++i) {
       const int u = std::clamp(i, 0, g.width - 1), v = std::clamp(j, 0, g.height - 1);
-      if (!(i == x && j == y) && !(std::fabs(z - g.depth.at(u, v)) < in.settings.filterThreshold)) continue;
+      if (!(i == x && j == y) && !counts(in, x, y, u, v)) continue;
       rays += float(in.settings.samples);
       numerator += sums.numerator.at(u, v);
       for (int c = 0; c < 3 && transfer && !own; ++c) denominator[c] += sums.denominator[c].at(u, v);

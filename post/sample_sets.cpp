@@ -1,6 +1,8 @@
 // Made by obscura-make-sample-sets: change post/make_sample_set.cpp and run it again, not this file.
 #include "obscura/post/sample_sets.h"
 
+#include "obscura/post/dealt_samples.h"
+
 namespace obscura::post {
 namespace {
 
@@ -349,6 +351,12 @@ constexpr std::array<glm::vec2, 16> kRotations = {
     glm::vec2(0x1.87de2ap-2f, 0x1.d906bcp-1f),
 };
 
+constexpr uint16_t kBoxSeeds[kMaxSamples] = {
+    3564, 1549, 321, 18, 46, 602, 218, 191, 19, 249, 19, 245, 92, 225, 156, 245, 19, 19, 125, 19, 19, 19, 71, 19, 71,
+    92, 19, 19, 19, 19, 19, 13, 19, 19, 19, 19, 19, 71, 67, 19, 19, 19, 19, 19, 19, 71, 71, 71, 19, 58, 58, 71, 19, 58,
+    35, 71, 67, 49, 1, 67, 19, 19, 49, 49,
+};
+
 }  // namespace
 
 raster::Span<const glm::vec3> sampleSet(int n) {
@@ -358,5 +366,7 @@ raster::Span<const glm::vec3> sampleSet(int n) {
 
 const std::array<uint8_t, 16>& rotationOrder() { return kRotationOrder; }
 const std::array<glm::vec2, 16>& rotations() { return kRotations; }
+
+uint32_t boxSeed(int n) { return kBoxSeeds[n - 1]; }
 
 }  // namespace obscura::post

@@ -20,17 +20,32 @@ enum class TransferAlbedo : uint8_t {
   Neighbour,  // equation 6 of the long one: W(y) = W(x), albedo read where the occluder is seen
 };
 
+// Where the pixel's rays come from.
+enum class Estimator : uint8_t {
+  Paper,  // one set of n points, turned by another angle in each pixel of a 4x4 pattern (long paper, section 5)
+  Sobol,  // one scrambled Sobol net of 16 n points, dealt to the 16 pixels of the pattern (dealt_samples.h)
+  Box,    // the same with the scramble that errs least over the 4x4 box
+};
+
+// What a pixel of the filter's window must have in common with the pixel itself to count.
+enum class FilterGuide : uint8_t {
+  Depth,  // |z - z'| < the threshold, as in the papers
+  Plane,  // it lies in the pixel's tangent plane, and its normal is much the same (depth_filter.h)
+};
+
 struct AmbientSettings {
   TransferAlbedo albedo = TransferAlbedo::Neighbour;
   Membership membership = Membership::Linear;
+  Estimator estimator = Estimator::Paper;
   int samples = 8;               // n, 1 ... 64 per pixel
   int steps = 1;                 // m, 1 ... 4 test points per ray
   float radius = 0.5f;           // R, scene units, > 0
   float bias = 0.005f;           // scene units, >= 0: how far behind the depth map a point must be to be inside
   bool silhouetteBound = true;   // what lies R or more behind the depth map is outside: no false silhouettes; false: inside
-  bool interleave = true;        // rotate the set from pixel to pixel, in a 4x4 pattern
-  bool filter = true;            // 4x4 box over the pixels of nearly the same depth
-  float filterThreshold = 0.1f;  // scene units, > 0
+  bool interleave = true;        // other rays in each pixel of a 4x4 pattern
+  bool filter = true;            // 4x4 box over pixels that have much in common
+  FilterGuide filterGuide = FilterGuide::Depth;
+  float filterThreshold = 0.1f;  // of FilterGuide::Depth: scene units, > 0
 };
 
 }  // namespace obscura::post

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "obscura/post/dealt_samples.h"
 #include "obscura/post/sample_sets.h"
 #include "obscura/raster/exact_math.h"
 #include "obscura/raster/float_environment.h"
@@ -11,6 +12,14 @@ namespace {
 
 constexpr double kTwoPi = 6.283185307179586476925;
 constexpr double kTauR = 5;  // tau of the exponential membership, times R
+constexpr uint32_t kSobolSeed = 1;
+
+std::vector<glm::vec3> samplePoints(const AmbientSettings& s) {
+  if (s.estimator == Estimator::Paper) return {sampleSet(s.samples).begin(), sampleSet(s.samples).end()};
+  std::vector<glm::vec3> points = dealtSamples(s.samples, s.estimator == Estimator::Box ? boxSeed(s.samples) : kSobolSeed);
+  for (size_t i = size_t(s.samples); !s.interleave && i < points.size(); ++i) points[i] = points[i - size_t(s.samples)];
+  return points;
+}
 
 }  // namespace
 
@@ -38,7 +47,7 @@ double membershipOf(Membership membership, double d) {
 std::vector<glm::vec3> transferSamples(const AmbientSettings& settings) {
   const raster::FloatEnvironment environment;
   std::vector<glm::vec3> offsets;
-  for (const glm::vec3& xi : sampleSet(settings.samples)) {
+  for (const glm::vec3& xi : samplePoints(settings)) {
     const double angle = kTwoPi * xi.x, sine = std::sqrt(double(xi.y)), cosine = std::sqrt(1 - double(xi.y));
     const double r = inverseMembership(settings.membership, xi.z) * settings.radius;
     offsets.push_back({float(raster::exactCos(angle) * sine * r), float(raster::exactSin(angle) * sine * r), float(cosine * r)});

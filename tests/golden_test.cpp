@@ -132,14 +132,14 @@ TEST_CASE("golden: the demo scene with 4 x 4 sub-pixels a pixel") {
 
 TEST_CASE("golden: threads, targets, tile sizes, skipping and the scalar twins give the same digest of every plane") {
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, 8);
-  const engine::FrameSettings settings = frameOf(100, 75);
+  engine::FrameSettings settings = frameOf(100, 75);
   engine::Frame frame;
   auto digests = [&](const raster::Settings& raster, bool reference) {
     engine::Renderer renderer(raster, reference);
     REQUIRE(renderer.render(demo(), settings, frame).ok());
     return apps::digestLines(frame, kAovs);
   };
-  const std::vector<std::string> expected = digests({}, true);
+  std::vector<std::string> expected = digests({}, true);
   for (raster::Target target : raster::supportedTargets())
     for (int tile : {16, 32, 64})
       for (int count : {1, 2, 3, 8})
@@ -149,6 +149,17 @@ TEST_CASE("golden: threads, targets, tile sizes, skipping and the scalar twins g
                                           << " --tile " << tile << " --threads " << count << (skip ? "" : " --no-skip"));
           REQUIRE(digests({count, target, tile, skip}, false) == expected);
         }
+  for (const auto& [estimator, guide] : {std::pair(post::Estimator::Sobol, post::FilterGuide::Depth),
+                                         std::pair(post::Estimator::Box, post::FilterGuide::Plane)}) {
+    settings.transfer.estimator = estimator;
+    settings.transfer.filterGuide = guide;
+    expected = digests({}, true);
+    for (raster::Target target : raster::supportedTargets())
+      for (int count : {1, 3, 8}) {
+        INFO(raster::targetName(target) << ", " << count << " threads, estimator " << int(estimator));
+        REQUIRE(digests({count, target, 16, count != 3}, false) == expected);
+      }
+  }
 }
 
 TEST_CASE("golden: supersampled frames, too, have one digest for threads, targets, tile sizes and the scalar twins") {
@@ -156,6 +167,7 @@ TEST_CASE("golden: supersampled frames, too, have one digest for threads, target
   engine::FrameSettings settings = frameOf(37, 29);
   for (int supersample : {2, 4}) {
     settings.supersample = supersample;
+    settings.transfer.filterGuide = supersample == 4 ? post::FilterGuide::Plane : post::FilterGuide::Depth;
     auto digests = [&](const raster::Settings& raster, bool reference) {
       engine::Renderer renderer(raster, reference);
       engine::Frame frame;

@@ -23,6 +23,8 @@ AmbientSettings settingsOf(uint32_t seed) {
   s.silhouetteBound = seed % 3 != 1;
   s.interleave = seed % 3 != 0;
   s.filter = seed % 7 != 0;
+  s.estimator = post::Estimator(seed / 2 % 3);
+  s.filterGuide = seed / 3 % 2 ? post::FilterGuide::Plane : post::FilterGuide::Depth;
   s.filterThreshold = random.real(0.05f, 0.5f);
   return s;
 }
@@ -115,6 +117,7 @@ TEST_CASE("post: a twin that computes anything else is noticed") {
   CHECK(with([](AmbientSettings& m) { m.interleave = false; }));
   CHECK(with([](AmbientSettings& m) { m.filter = false; }));
   CHECK(with([](AmbientSettings& m) { m.filterThreshold = 0.05f; }));
+  CHECK(with([](AmbientSettings& m) { m.filterGuide = post::FilterGuide::Plane; }));
   CHECK(with([](AmbientSettings& m) { m.membership = post::Membership::Sqrt; }));
   CHECK(with([](AmbientSettings& m) { m.radius = 1.01f; }));
 }
