@@ -72,7 +72,7 @@ class Bins {
   // processor cannot foretell.
   enum Kind { kOne, kTwoAcross, kTwoDown, kTwoByTwo, kAnySize, kKinds };
   Kind kindOf(int32_t block, int32_t blocks) const {
-    const int last = (1 << (grid_.tileBits - kBlockBits)) - 1, columns = lowerHalf(blocks), rows = upperHalf(blocks);
+    const int last = (1 << (grid_.tileBits - kBlockBits)) - 1, columns = blocks & (SmallTriangle::kMaskedBit - 1), rows = blocks >> 16;
     const bool inTile = (lowerHalf(block) & last) + columns <= last && (upperHalf(block) & last) + rows <= last;
     return inTile && (columns | rows) <= 1 ? Kind(columns + 2 * rows) : kAnySize;
   }
@@ -88,7 +88,7 @@ class Bins {
   // Copies it to the other tiles that it touches, if any.
   void spread(const SmallTriangle& t) {
     const int bits = grid_.tileBits - kBlockBits, x = lowerHalf(t.block), y = upperHalf(t.block);
-    const int c0 = x >> bits, c1 = (x + lowerHalf(t.blocks)) >> bits, r0 = y >> bits, r1 = (y + upperHalf(t.blocks)) >> bits;
+    const int c0 = x >> bits, c1 = (x + t.columns() - 1) >> bits, r0 = y >> bits, r1 = (y + t.rows() - 1) >> bits;
     if (c0 == c1 && r0 == r1) return;
     const SmallTriangle copy = t;
     for (int r = r0; r <= r1; ++r)

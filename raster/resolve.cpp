@@ -94,19 +94,34 @@ HWY_INLINE void storeVisible(const View& view, VF key, VU id, int x, int y, GBuf
   hn::StoreU(hn::IfThenElseZero(covered, hn::Sub(zero, zView)), d, out.position[2].row(y) + x);
 }
 
+// The lines that four rows of depth and ids will fill.
+HWY_INLINE void fetchRows(const TileBuffers& tile, int top, GBuffer& out) {
+  constexpr int kLine = 16;  // pixels
+  for (int row = top; row < std::min(top + kBlock, tile.height); ++row)
+    for (int x = tile.x; x < tile.x + tile.width; x += kLine) {
+      if (!out.depth.empty()) __builtin_prefetch(out.depth.row(tile.y + row) + x, 1);
+      if (!out.triangle.empty()) __builtin_prefetch(out.triangle.row(tile.y + row) + x, 1);
+    }
+}
+
 // Depth, position and triangle ids need nothing but the visibility: whole rows, as memory likes it.
 HWY_INLINE void storeVisibility(const View& view, const TileBuffers& tile, GBuffer& out) {
   const DF d;
   const DU du;
+  fetchRows(tile, 0, out);
   for (int top = 0; top < tile.height; top += kBlock) {
+    fetchRows(tile, top + kBlock, out);
     const int rows = std::min(kBlock, tile.height - top);
     for (int column = 0; column < tile.width; column += int(hn::Lanes(d))) {
-      const int at = tile.at(column, top);
+      const int at = tile.at(column, top), x = tile.x + column, y = tile.y + top;
       VF keys[kBlock];
       VU ids[kBlock];
       rowsOfBlocks(d, tile.key + at, keys);
       rowsOfBlocks(du, tile.id + at, ids);
-      for (int row = 0; row < rows; ++row) storeVisible(view, keys[row], ids[row], tile.x + column, tile.y + top + row, out);
+      storeVisible(view, keys[0], ids[0], x, y, out);  // not a loop, which would keep them in memory
+      if (rows > 1) storeVisible(view, keys[1], ids[1], x, y + 1, out);
+      if (rows > 2) storeVisible(view, keys[2], ids[2], x, y + 2, out);
+      if (rows > 3) storeVisible(view, keys[3], ids[3], x, y + 3, out);
     }
   }
 }

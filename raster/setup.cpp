@@ -189,17 +189,17 @@ HWY_INLINE MI hiddenBoxes(const OcclusionMap& occlusion, const Box& box, VF near
 // what the depth gradients are made of.
 struct Survivors {
   enum Field {
-    kE0, kE1, kE2, kA, kB, kBlock, kBlocks, kKey0, kXGradient, kYGradient, kXFromP0, kYFromP0, kKeyMin, kKeyMax, kId, kMasked,
+    kE0, kE1, kE2, kAB0, kAB1, kAB2, kBlock, kBlocks, kKey0, kXGradient, kYGradient, kXFromP0, kYFromP0, kKeyMin, kKeyMax, kId,
     kFields
   };
   HWY_ALIGN int32_t field[kFields][16];
   HWY_ALIGN int32_t dx1[16], dy1[16], dx2[16], dy2[16], area[16];
   HWY_ALIGN float key0[16], key1[16], key2[16];
 };
-static_assert(sizeof(SmallTriangle) == Survivors::kFields * sizeof(int32_t) && offsetof(SmallTriangle, a) == Survivors::kA * 4 &&
+static_assert(sizeof(SmallTriangle) == Survivors::kFields * sizeof(int32_t) && offsetof(SmallTriangle, ab) == Survivors::kAB0 * 4 &&
               offsetof(SmallTriangle, block) == Survivors::kBlock * 4 && offsetof(SmallTriangle, key0) == Survivors::kKey0 * 4 &&
               offsetof(SmallTriangle, xFromP0) == Survivors::kXFromP0 * 4 && offsetof(SmallTriangle, keyMin) == Survivors::kKeyMin * 4 &&
-              offsetof(SmallTriangle, id) == Survivors::kId * 4 && offsetof(SmallTriangle, masked) == Survivors::kMasked * 4);
+              offsetof(SmallTriangle, id) == Survivors::kId * 4);
 
 // Depth gradients, in double: the products of a 24-bit key and a 15-bit extent are exact there.
 HWY_INLINE void depthGradients(Survivors& s, int count) {
@@ -311,13 +311,13 @@ void SetupCluster(const View& view, const Draw& draw, const Cluster& cluster, co
     };
     auto put = [&](VI v, Survivors::Field f) HWY_ATTR { hn::Store(v, di, s.field[f]); };
     auto putReal = [&](VF v, Survivors::Field f) HWY_ATTR { put(hn::BitCast(di, v), f); };
-    put(edges.e[0], Survivors::kE0);
-    put(edges.e[1], Survivors::kE1);
-    put(edges.e[2], Survivors::kE2);
-    put(pair(edges.a[0], edges.a[1]), Survivors::kA);
-    put(pair(edges.b[0], edges.b[1]), Survivors::kB);
+    for (int k = 0; k < 3; ++k) {
+      put(edges.e[k], Survivors::Field(Survivors::kE0 + k));
+      put(pair(edges.a[k], edges.b[k]), Survivors::Field(Survivors::kAB0 + k));
+    }
     put(pair(bx, by), Survivors::kBlock);
-    put(pair(hn::Sub(hn::ShiftRight<kBlockBits>(box.x1), bx), hn::Sub(hn::ShiftRight<kBlockBits>(box.y1), by)), Survivors::kBlocks);
+    const VI columns = hn::Sub(hn::ShiftRight<kBlockBits>(box.x1), bx), rows = hn::Sub(hn::ShiftRight<kBlockBits>(box.y1), by);
+    put(pair(hn::Or(columns, hn::Set(di, masked ? SmallTriangle::kMaskedBit : 0)), rows), Survivors::kBlocks);
     const VI cx = hn::Add(hn::ShiftLeft<kSubBits>(x), hn::Set(di, kSub / 2 + view.xFirstSub));
     const VI cy = hn::Add(hn::ShiftLeft<kSubBits>(y), hn::Set(di, kSub / 2 + view.yFirstSub));
     putReal(hn::ConvertTo(d, hn::Sub(cx, c.x[0])), Survivors::kXFromP0);
@@ -327,7 +327,6 @@ void SetupCluster(const View& view, const Draw& draw, const Cluster& cluster, co
     putReal(nearest, Survivors::kKeyMax);
     const VI number = hn::GatherIndex(di, reinterpret_cast<const int32_t*>(triangles), index);
     put(hn::Add(number, hn::Set(di, int32_t(draw.firstTriangle))), Survivors::kId);
-    put(hn::Set(di, masked), Survivors::kMasked);
     hn::Store(hn::Sub(c.x[1], c.x[0]), di, s.dx1);
     hn::Store(hn::Sub(c.y[1], c.y[0]), di, s.dy1);
     hn::Store(hn::Sub(c.x[2], c.x[0]), di, s.dx2);

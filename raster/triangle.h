@@ -27,14 +27,18 @@ static_assert(int64_t(2) * kSmallExtentSub * (kSmallExtentSub + kBlock * kSub) <
 
 struct alignas(64) SmallTriangle {
   int32_t e[3];     // at the centre of the upper left pixel of block (x, y)
-  int32_t a, b;     // two of 16 bits, edge 0 lower and edge 1 upper; those of edge 2 make the sums zero
+  int32_t ab[3];    // of 16 bits each: a lower, b upper
   int32_t block;    // x lower, y upper: first block that the covered centres' box touches, inside the window
-  int32_t blocks;   // columns lower, rows upper: how many blocks it touches, less one
+  int32_t blocks;   // how many blocks it touches, less one: columns lower, rows upper; kMaskedBit if alpha decides per pixel
   float key0, xGradient, yGradient;  // gradients per sub-pixel
   float xFromP0, yFromP0;            // centre of that pixel minus p0, sub-pixels, exact
   float keyMin, keyMax;
   uint32_t id;
-  uint32_t masked;  // alpha decides per pixel
+
+  static constexpr int32_t kMaskedBit = 1 << 15;
+  int columns() const { return (blocks & (kMaskedBit - 1)) + 1; }
+  int rows() const { return (blocks >> 16) + 1; }
+  bool masked() const { return blocks & kMaskedBit; }
 };
 static_assert(sizeof(SmallTriangle) == 64, "one cache line");
 
