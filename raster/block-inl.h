@@ -103,35 +103,44 @@ struct Blocks {
   float xFromP0, yFromP0;   // that pixel's centre minus p0, exact
 };
 
-// Sixteen blocks, four in a row, or what of them lies in the triangle's box.
+// The bits of a mask's lanes, from bit `first` on.
+HWY_INLINE uint32_t bitsFrom(int first, MI mask) {
+  uint8_t bits[8] = {};
+  hn::StoreMaskBits(DI(), mask, bits);
+  return (uint32_t(bits[0]) | uint32_t(bits[1]) << 8) << first;
+}
+
+// Edge functions in sixteen blocks, four in a row.
 struct SixteenBlocks {
-  uint32_t touched = 0, partly = 0;         // bits: no edge function is negative in all four corners; one is in any
-  HWY_ALIGN int32_t e[3][kBlockPixels];     // edge functions at each block's first pixel
+  uint32_t touched, partly;              // bits: no edge function is negative in all four corners; one is in any
+  HWY_ALIGN int32_t e[3][kBlockPixels];  // at each block's first pixel
 };
 
-// Block (column, row) of the box is the first. step: a dx + b dy of every pixel of a block, and with blocks for pixels of
-// every block.
+// Block (column, row) of the box is the first of the sixteen; those outside of the box are not touched. step: a dx + b dy of
+// every pixel of a block, and four times that of the blocks of sixteen.
+template <bool kPartly>
 HWY_INLINE void findTouched(const Blocks& t, const VI step[3][kVectors], int column, int row, SixteenBlocks& out) {
   const DI di;
+  constexpr int kLanes = int(hn::MaxLanes(DI()));
   out.touched = out.partly = 0;
+  const auto edge = [&](int i, int k, VI& outside, VI& partly) HWY_ATTR {
+    const int32_t first = t.e[i] + (t.a[i] * column + t.b[i] * row) * kBlock;
+    const VI e = hn::Add(hn::Set(di, first), hn::ShiftLeft<kBlockBits>(step[i][k]));
+    hn::Store(e, di, out.e[i] + k * kLanes);
+    const int32_t across = (kBlock - 1) * t.a[i], down = (kBlock - 1) * t.b[i];
+    outside = hn::Or(outside, hn::Add(e, hn::Set(di, (across > 0 ? across : 0) + (down > 0 ? down : 0))));
+    if (kPartly) partly = hn::Or(partly, hn::Add(e, hn::Set(di, (across < 0 ? across : 0) + (down < 0 ? down : 0))));
+  };
   for (int k = 0; k < kVectors; ++k) {
-    // Blocks outside of the box are neither.
     VI outside = hn::Or(hn::Sub(hn::Set(di, t.columns - 1 - column), columnOf(k)), hn::Sub(hn::Set(di, t.rows - 1 - row), rowOf(k)));
     VI partly = hn::Zero(di);
-    for (int i = 0; i < 3; ++i) {
-      const int32_t first = t.e[i] + (t.a[i] * column + t.b[i] * row) * kBlock;
-      const VI e = hn::Add(hn::Set(di, first), hn::ShiftLeft<kBlockBits>(step[i][k]));
-      hn::Store(e, di, out.e[i] + k * int(hn::MaxLanes(di)));
-      outside = hn::Or(outside, hn::Add(e, hn::Set(di, (kBlock - 1) * (std::max(t.a[i], 0) + std::max(t.b[i], 0)))));
-      partly = hn::Or(partly, hn::Add(e, hn::Set(di, (kBlock - 1) * (std::min(t.a[i], 0) + std::min(t.b[i], 0)))));
-    }
-    uint8_t bits[2][8] = {};
-    hn::StoreMaskBits(di, hn::Not(hn::Lt(outside, hn::Zero(di))), bits[0]);
-    hn::StoreMaskBits(di, hn::Lt(partly, hn::Zero(di)), bits[1]);
-    out.touched |= (uint32_t(bits[0][0]) | uint32_t(bits[0][1]) << 8) << (k * int(hn::MaxLanes(di)));
-    out.partly |= (uint32_t(bits[1][0]) | uint32_t(bits[1][1]) << 8) << (k * int(hn::MaxLanes(di)));
+    edge(0, k, outside, partly);  // not a loop, which g++ would not unroll
+    edge(1, k, outside, partly);
+    edge(2, k, outside, partly);
+    out.touched |= bitsFrom(k * kLanes, hn::Not(hn::Lt(outside, hn::Zero(di))));
+    if (kPartly) out.partly |= bitsFrom(k * kLanes, hn::Lt(partly, hn::Zero(di)));
   }
-  out.partly &= out.touched;
+  out.partly = kPartly ? out.partly & out.touched : out.touched;
 }
 
 // Vector k of block (column, row) of the box; x0, y0: the pixels' centres in the first block, minus p0.
@@ -145,33 +154,42 @@ HWY_INLINE void fillBlock(MaskedTriangle* masked, const Blocks& t, int column, i
   fillVector<kKeep>(masked, out.x + blockX * kBlock, out.y + blockY * kBlock, k, t.plane.id, keyAt(t.plane, x, y), outside, at, out);
 }
 
-template <Keep kKeep>
-HWY_INLINE void fillBlocks(MaskedTriangle* masked, const Blocks& t, const TileBuffers& out) {
+// Sixteen blocks from block (column, row) of the box. kPartly: many may be covered whole, and no edge is asked for there.
+template <Keep kKeep, bool kPartly>
+HWY_INLINE void fillSixteen(MaskedTriangle* masked, const Blocks& t, const VI step[3][kVectors], int column, int row,
+                            const TileBuffers& out) {
   const DF d;
   const DI di;
-  VI step[3][kVectors];
-  for (int i = 0; i < 3; ++i)
-    for (int k = 0; k < kVectors; ++k)
-      step[i][k] = hn::Add(hn::Mul(columnOf(k), hn::Set(di, t.a[i])), hn::Mul(rowOf(k), hn::Set(di, t.b[i])));
   SixteenBlocks some;
-  for (int row = 0; row < t.rows; row += kBlock)
-    for (int column = 0; column < t.columns; column += kBlock) {
-      findTouched(t, step, column, row, some);
-      for (int k = 0; k < kVectors; ++k) {
-        const VF x0 = hn::Add(hn::ConvertTo(d, hn::ShiftLeft<kSubBits>(columnOf(k))), hn::Set(d, t.xFromP0));
-        const VF y0 = hn::Add(hn::ConvertTo(d, hn::ShiftLeft<kSubBits>(rowOf(k))), hn::Set(d, t.yFromP0));
-        for (uint32_t rest = some.touched & ~some.partly; rest != 0; rest &= rest - 1) {
-          const int block = int(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
-          fillBlock<kKeep>(masked, t, column + (block & (kBlock - 1)), row + (block >> kBlockBits), k, x0, y0, hn::Zero(di), out);
-        }
-        for (uint32_t rest = some.partly; rest != 0; rest &= rest - 1) {
-          const int block = int(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
-          auto edge = [&](int i) HWY_ATTR { return hn::Add(step[i][k], hn::Set(di, some.e[i][block])); };
-          fillBlock<kKeep>(masked, t, column + (block & (kBlock - 1)), row + (block >> kBlockBits), k, x0, y0,
-                           hn::Or(hn::Or(edge(0), edge(1)), edge(2)), out);
-        }
+  findTouched<kPartly>(t, step, column, row, some);
+  for (int k = 0; k < kVectors; ++k) {
+    const VF x0 = hn::Add(hn::ConvertTo(d, hn::ShiftLeft<kSubBits>(columnOf(k))), hn::Set(d, t.xFromP0));
+    const VF y0 = hn::Add(hn::ConvertTo(d, hn::ShiftLeft<kSubBits>(rowOf(k))), hn::Set(d, t.yFromP0));
+    if (kPartly)
+      for (uint32_t rest = some.touched & ~some.partly; rest != 0; rest &= rest - 1) {
+        const int block = int(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
+        fillBlock<kKeep>(masked, t, column + (block & (kBlock - 1)), row + (block >> kBlockBits), k, x0, y0, hn::Zero(di), out);
       }
+    for (uint32_t rest = some.partly; rest != 0; rest &= rest - 1) {
+      const int block = int(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
+      auto edge = [&](int i) HWY_ATTR { return hn::Add(step[i][k], hn::Set(di, some.e[i][block])); };
+      fillBlock<kKeep>(masked, t, column + (block & (kBlock - 1)), row + (block >> kBlockBits), k, x0, y0,
+                       hn::Or(hn::Or(edge(0), edge(1)), edge(2)), out);
     }
+  }
+}
+
+template <Keep kKeep>
+HWY_INLINE void fillBlocks(MaskedTriangle* masked, const Blocks& t, const TileBuffers& out) {
+  const DI di;
+  VI step[3][kVectors];
+  const auto stepOf = [&](int i, int k) HWY_ATTR {
+    return hn::Add(hn::Mul(columnOf(k), hn::Set(di, t.a[i])), hn::Mul(rowOf(k), hn::Set(di, t.b[i])));
+  };
+  for (int k = 0; k < kVectors; ++k) step[0][k] = stepOf(0, k), step[1][k] = stepOf(1, k), step[2][k] = stepOf(2, k);
+  if (t.columns <= kBlock && t.rows <= kBlock) return fillSixteen<kKeep, false>(masked, t, step, 0, 0, out);
+  for (int row = 0; row < t.rows; row += kBlock)
+    for (int column = 0; column < t.columns; column += kBlock) fillSixteen<kKeep, true>(masked, t, step, column, row, out);
 }
 
 // a dx + b dy of every pixel of vector k in block (column, row): the pair ab has a in its lower 16 bits and b in its upper
