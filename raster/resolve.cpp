@@ -14,34 +14,6 @@ HWY_BEFORE_NAMESPACE();
 namespace obscura::raster {
 namespace HWY_NAMESPACE {
 
-// Where a vector of pixels of a block lies: its first pixel in the image, rows of it that are inside.
-struct At {
-  int x, y, rows;
-};
-
-// Writes a vector of a block's pixels: up to four pixels in each of its rows.
-template <class D, class T>
-HWY_INLINE void storeRows(D d, hn::Vec<D> v, const At& at, Plane<T>& plane) {
-#if HWY_TARGET != HWY_SCALAR  // which has no halves
-  if constexpr (hn::MaxLanes(D()) > kBlock) {
-    const hn::Half<D> half;
-    constexpr int kRows = int(hn::MaxLanes(D())) / kBlock / 2;
-    storeRows(half, hn::LowerHalf(half, v), at, plane);
-    if (at.rows > kRows) storeRows(half, hn::UpperHalf(half, v), {at.x, at.y + kRows, at.rows - kRows}, plane);
-    return;
-  }
-#endif
-  hn::StoreU(v, d, plane.row(at.y) + at.x);
-}
-
-HWY_INLINE void store3(const V3& v, const At& at, Plane<float> planes[3]) {
-  const DF d;
-  if (planes[0].empty()) return;
-  storeRows(d, v.x, at, planes[0]);
-  storeRows(d, v.y, at, planes[1]);
-  storeRows(d, v.z, at, planes[2]);
-}
-
 // Pixels side by side, one vector for each of the four rows of the blocks that it takes to fill them; at: element of the
 // first. No temporary: a vector that is loaded from what four stores have just written waits for all of them.
 template <class D, class T>
@@ -69,6 +41,9 @@ HWY_INLINE void rowsOfBlocks(D d, const T* at, hn::Vec<D> rows[kBlock]) {
   for (int row = 0; row < kBlock; ++row) rows[row] = hn::Load(d, at + row * kBlock);
 #endif
 }
+
+// Element, in a row of blocks, of the first pixel of column `column`.
+constexpr int elementOf(int column) { return ((column >> kBlockBits) << (2 * kBlockBits)) + (column & (kBlock - 1)); }
 
 // One row of depth, position and triangle ids.
 HWY_INLINE void storeVisible(const View& view, VF key, VU id, int x, int y, GBuffer& out) {
@@ -126,7 +101,48 @@ HWY_INLINE void storeVisibility(const View& view, const TileBuffers& tile, GBuff
   }
 }
 
-HWY_INLINE void storeDraws(const VectorTriangles& t, const At& at, GBuffer& out) {
+// Four rows of the cell: a block after the other for each plane, as in the tile's memory.
+struct Strip {
+  static constexpr int kPixels = kCell * kBlock;
+  HWY_ALIGN float normal[3][kPixels], albedo[3][kPixels], emissive[3][kPixels];
+  HWY_ALIGN uint32_t instance[kPixels], material[kPixels];
+};
+
+template <class T>
+HWY_INLINE void storePlane(const T* blocks, int x, int y, int rows, Plane<T>& plane) {
+  const hn::Rebind<T, DF> d;
+  if (plane.empty()) return;
+  for (int column = 0; column < kCell; column += int(hn::MaxLanes(d))) {
+    hn::Vec<decltype(d)> row[kBlock];
+    rowsOfBlocks(d, blocks + elementOf(column), row);
+    T* to = plane.row(y) + x + column;
+    const size_t stride = plane.stride();
+    hn::StoreU(row[0], d, to);
+    if (rows > 1) hn::StoreU(row[1], d, to + stride);
+    if (rows > 2) hn::StoreU(row[2], d, to + 2 * stride);
+    if (rows > 3) hn::StoreU(row[3], d, to + 3 * stride);
+  }
+}
+
+// x, y: of the image; rows: that are inside of it.
+HWY_INLINE void storeStrip(const Strip& s, const Wanted& wanted, int x, int y, int rows, GBuffer& out) {
+  for (int c = 0; c < 3 && wanted.surfaces(); ++c) {
+    storePlane(s.normal[c], x, y, rows, out.normal[c]);
+    storePlane(s.albedo[c], x, y, rows, out.albedo[c]);
+    storePlane(s.emissive[c], x, y, rows, out.emissive[c]);
+  }
+  storePlane(s.instance, x, y, rows, out.instance);
+  storePlane(s.material, x, y, rows, out.material);
+}
+
+HWY_INLINE void keep(const V3& v, float planes[3][Strip::kPixels], int at) {
+  const DF d;
+  hn::Store(v.x, d, planes[0] + at);
+  hn::Store(v.y, d, planes[1] + at);
+  hn::Store(v.z, d, planes[2] + at);
+}
+
+HWY_INLINE void keepDraws(const VectorTriangles& t, Strip& strip, int at) {
   const DU d;
   VU instance = hn::Set(d, kNoTriangle), material = instance;
   for (int k = 0; k < t.count; ++k) {
@@ -134,8 +150,8 @@ HWY_INLINE void storeDraws(const VectorTriangles& t, const At& at, GBuffer& out)
     instance = hn::IfThenElse(mine, hn::Set(d, t.draw(k).instance), instance);
     material = hn::IfThenElse(mine, hn::Set(d, t.draw(k).materialIndex), material);
   }
-  if (!out.instance.empty()) storeRows(d, instance, at, out.instance);
-  if (!out.material.empty()) storeRows(d, material, at, out.material);
+  hn::Store(instance, d, strip.instance + at);
+  hn::Store(material, d, strip.material + at);
 }
 
 // The lines of memory that a cell's planes will fill; cells jump from row to row, which no prefetcher follows.
@@ -157,26 +173,28 @@ HWY_INLINE void resolveCell(const SurfaceContext& context, const TileBuffers& ti
   findTriangles(context, tile, blocks, cell);
   describeTriangles(context, wanted.surfaces(), wanted.normal, tile.x + left, tile.y + top, cell);
   int vector = 0, slot = 0;
-  for (int row = 0; row < blocks.rows; ++row)
+  Strip strip;
+  for (int row = 0; row < blocks.rows; ++row) {
     for (int column = 0; column < blocks.columns; ++column)
       for (int first = 0; first < kBlock * kBlock; first += int(hn::Lanes(d))) {
         const int dx = column * kBlock + first % kBlock, dy = row * kBlock + (first >> kBlockBits);  // from the cell's first pixel
-        const At at{tile.x + left + dx, tile.y + top + dy, tile.height - (top + dy)};
-        const int count = cell.slotEnd[vector] - slot;
+        const int count = cell.slotEnd[vector] - slot, at = column * kBlock * kBlock + first;
         const VU id = hn::Load(du, tile.id + firstOfBlock(tile, blocks.x + column, blocks.y + row) + first);
         const VectorTriangles t{cell, cell.slot + slot, count, cell.oneDraw ? std::min(count, 1) : count, id};
         ++vector;
         slot += count;
-        if (at.rows <= 0) continue;
-        if (wanted.draws) storeDraws(t, at, out);
+        if (wanted.draws) keepDraws(t, strip, at);
         if (!wanted.surfaces()) continue;
         const VI lx = hn::And(hn::Iota(di, 0), hn::Set(di, kBlock - 1)), ly = hn::ShiftRight<kBlockBits>(hn::Iota(di, 0));
         const Shaded s = shade(context, wanted, t, hn::RebindMask(d, hn::Ne(id, hn::Set(du, kNoTriangle))),
                                hn::ConvertTo(d, hn::Add(lx, hn::Set(di, dx))), hn::ConvertTo(d, hn::Add(ly, hn::Set(di, dy))));
-        store3(s.normal, at, out.normal);
-        store3(s.albedo, at, out.albedo);
-        store3(s.emissive, at, out.emissive);
+        if (wanted.normal) keep(s.normal, strip.normal, at);
+        if (wanted.albedo) keep(s.albedo, strip.albedo, at);
+        if (wanted.emissive) keep(s.emissive, strip.emissive, at);
       }
+    const int y = top + row * kBlock;
+    storeStrip(strip, wanted, tile.x + left, tile.y + y, std::min(kBlock, tile.height - y), out);
+  }
 }
 
 void ResolveTile(const SurfaceContext& context, const TileBuffers& tile, GBuffer& out) {
@@ -209,7 +227,12 @@ namespace {
 template <class T>
 void fill(const TileBuffers& tile, Plane<T>& plane, T value) {
   if (plane.empty()) return;
-  for (int row = 0; row < tile.height; ++row) std::fill_n(plane.row(tile.y + row) + tile.x, tile.width, value);
+  constexpr int kAhead = 8, kLine = 64 / int(sizeof(T));
+  for (int row = 0; row < tile.height; ++row) {
+    for (int x = 0; row + kAhead < tile.height && x < tile.width; x += kLine)
+      __builtin_prefetch(plane.row(tile.y + row + kAhead) + tile.x + x, 1);
+    std::fill_n(plane.row(tile.y + row) + tile.x, tile.width, value);
+  }
 }
 
 void resolveEmpty(const TileBuffers& tile, GBuffer& out) {
