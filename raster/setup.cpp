@@ -10,7 +10,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "obscura/raster/transform-inl.h"
+#include "obscura/raster/facing-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace obscura::raster {
@@ -23,54 +23,6 @@ HWY_INLINE void append(VI v, MI mask, int32_t* list, int& count) {
   const DI d;
   hn::StoreU(hn::Compress(v, mask), d, list + count);
   count += int(hn::CountTrue(d, mask));
-}
-
-// Numbers (in the cluster) of the triangles that face the eye, in `list`; those too close to call by the cluster's
-// planes are decided exactly.
-int facingTriangles(const Draw& draw, const Cluster& cluster, int32_t* list) {
-  const DF d;
-  const DI di;
-  const int lanes = int(hn::Lanes(d));
-  const int triangles = int(cluster.triangleCount);
-  const Clusters& all = *draw.clusters;
-  int count = 0;
-  if (draw.material->doubleSided || !draw.invertible) {
-    for (int t = 0; t < triangles; ++t) list[t] = t;
-    return triangles;
-  }
-  // n . (eye - center) - n . (v0 - center), against 16 times the rounding error that either side can have.
-  float toEye[3], distance = 0;
-  for (int c = 0; c < 3; ++c) {
-    toEye[c] = draw.eye[3] > 0 ? draw.eye[c] - cluster.center[c] : draw.eye[c];
-    distance += std::fabs(toEye[c]);
-  }
-  const float turn = draw.away ? -1.0f : 1.0f;  // changes all signs below, and no rounding
-  const VF w = hn::Set(d, turn * draw.eye[3]);
-  const float reach = distance + cluster.radius * draw.eye[3];
-  // Below 1e-12 products with a plane of 1e-18 come near to underflow: everything is decided exactly.
-  const VF slack = hn::Set(d, reach > 1e-12f ? reach * (1.0f / (1 << 20)) : HUGE_VALF);
-  const VF ex = hn::Set(d, turn * toEye[0]), ey = hn::Set(d, turn * toEye[1]), ez = hn::Set(d, turn * toEye[2]);
-  for (int t = 0; t < triangles; t += lanes) {
-    const size_t at = cluster.firstTriangle + size_t(t);
-    const VF nx = hn::LoadU(d, all.planeX.data() + at), ny = hn::LoadU(d, all.planeY.data() + at);
-    const VF nz = hn::LoadU(d, all.planeZ.data() + at), nw = hn::LoadU(d, all.planeW.data() + at);
-    const VF side = hn::Sub(hn::Add(hn::Add(hn::Mul(nx, ex), hn::Mul(ny, ey)), hn::Mul(nz, ez)), hn::Mul(nw, w));
-    const VF error = hn::Mul(hn::Add(hn::Add(hn::Abs(nx), hn::Abs(ny)), hn::Abs(nz)), slack);
-    const MI inside = hn::Lt(hn::Iota(di, t), hn::Set(di, triangles));
-    const MI front = hn::And(hn::RebindMask(di, hn::Gt(side, error)), inside);
-    const MI back = hn::RebindMask(di, hn::Lt(side, hn::Neg(error)));
-    append(hn::Iota(di, t), front, list, count);
-    const MI noArea = hn::RebindMask(di, hn::Eq(error, hn::Zero(d)));  // n is 0 and faces nothing
-    const MI unsure = hn::AndNot(hn::Or(hn::Or(front, back), noArea), inside);
-    if (HWY_UNLIKELY(!hn::AllFalse(di, unsure))) {
-      HWY_ALIGN int32_t which[16 + 16];
-      int n = 0;
-      append(hn::Iota(di, t), unsure, which, n);
-      for (int i = 0; i < n; ++i)
-        if (facesEye(draw, all.triangle[cluster.firstTriangle + size_t(which[i])])) list[count++] = which[i];
-    }
-  }
-  return count;
 }
 
 // Three corners of a vector of triangles, gathered.
@@ -232,16 +184,18 @@ void SetupCluster(const View& view, const Draw& draw, const Cluster& cluster, co
     return hn::GatherIndex(di, reinterpret_cast<const int32_t*>(corners), index);
   };
 
-  HWY_ALIGN int32_t facing[kList], visible[kList];
-  int facingCount = facingTriangles(draw, cluster, facing), visibleCount = 0;
-  statistics.facingAway += cluster.triangleCount - uint64_t(facingCount);
-  for (int i = facingCount; i < facingCount + lanes && i < kList; ++i) facing[i] = 0;  // the last vector's rest
-
-  // First pass: keep what covers a pixel centre, as far as boxes tell, and the centres of tiny ones.
-  for (int i = 0; i < facingCount; i += lanes) {
-    const VI index = hn::Load(di, facing + i);
-    const MI valid = hn::Lt(hn::Iota(di, i), hn::Set(di, facingCount));
-    const Corners c = gatherCorners(vertices, packedCorners(index));
+  // First pass: keep what faces the eye and covers a pixel centre, as far as boxes tell, and the centres of tiny ones.
+  HWY_ALIGN int32_t visible[kList];
+  int visibleCount = 0;
+  const Facing facing(draw, cluster);
+  uint64_t facingCount = 0;
+  for (int i = 0; i < int(cluster.triangleCount); i += lanes) {
+    const VI index = hn::Iota(di, i);
+    const MI valid = facing.of(i, hn::Lt(index, hn::Set(di, int32_t(cluster.triangleCount))));
+    const uint64_t validCount = hn::CountTrue(di, valid);
+    if (validCount == 0) continue;
+    facingCount += validCount;
+    const Corners c = gatherCorners(vertices, hn::LoadU(di, reinterpret_cast<const int32_t*>(corners) + i));
     const Box box = boundingBox(view, c);
     MI single = hn::Or(hn::Gt(box.xExtent, hn::Set(di, kSmallExtentSub)), hn::Gt(box.yExtent, hn::Set(di, kSmallExtentSub)));
     MI gone = hn::Or(hn::Gt(box.x0, box.x1), hn::Gt(box.y0, box.y1));
@@ -272,11 +226,12 @@ void SetupCluster(const View& view, const Draw& draw, const Cluster& cluster, co
     keep = hn::AndNot(hn::And(tiny, missesFour(edges)), keep);
     const int before = visibleCount;
     append(index, keep, visible, visibleCount);
-    const uint64_t validCount = hn::CountTrue(di, valid), turnedCount = hn::CountTrue(di, turned);
+    const uint64_t turnedCount = hn::CountTrue(di, turned);
     statistics.facingAway += turnedCount;
     statistics.outside += validCount - turnedCount - hn::CountTrue(di, toSingle) - uint64_t(visibleCount - before);
   }
-  for (int i = visibleCount; i < visibleCount + lanes && i < kList; ++i) visible[i] = 0;
+  statistics.facingAway += cluster.triangleCount - facingCount;
+  for (int i = visibleCount; i < visibleCount + lanes && i < kList; ++i) visible[i] = 0;  // the last vector's rest
 
   // Second pass: records of the rest.
   const bool masked = draw.material->alphaMode == AlphaMode::Mask;
