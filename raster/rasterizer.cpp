@@ -75,6 +75,7 @@ struct Rasterizer::State {
   int tileBits;
   Parallel parallel;
   SrgbTable srgb;
+  DrawRuns drawRuns;
   std::vector<std::unique_ptr<Worker>> workers;
   std::vector<Bins> bins, awayBins;  // one per worker, contiguous for the tiles
   Statistics statistics;
@@ -281,7 +282,8 @@ void Rasterizer::State::render(const DrawList& list, const View& view, const Cam
   std::vector<Draw> draws = makeDraws(list, camera);
   std::map<const MeshView*, Clusters> made;
   clusterThoseWithout(draws, made);
-  const SurfaceContext context{&view, draws, list.textures, srgb.linear};
+  drawRuns.find(draws);
+  const SurfaceContext context{&view, draws, &drawRuns, list.textures, srgb.linear};
   if (planes.depthBack) setupAway(view, awayDraws(draws));
   // What lies behind the first layer must not be hidden by it.
   drawVisible(context, settings.skip && !planes.depth2 && !planes.depthBack && int64_t(view.width) * view.height <= kMostKept);

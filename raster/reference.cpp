@@ -187,7 +187,7 @@ void renderReference(const DrawList& list, const Camera& camera, int width, int 
   const SrgbTable srgb;
   const View view = makeView(camera, width, height, window);
   const std::vector<Draw> draws = makeDraws(list, camera);
-  const SurfaceContext context{&view, draws, list.textures, srgb.linear};
+  const SurfaceContext context{&view, draws, nullptr, list.textures, srgb.linear};
   const ref::Visibility visibility = ref::visibility(context);
   out = GBuffer(view.width, view.height, planes);
   for (int y = 0; y < view.height; ++y)

@@ -197,6 +197,25 @@ HWY_INLINE void resolveCell(const SurfaceContext& context, const TileBuffers& ti
   }
 }
 
+template <class T>
+HWY_INLINE void fill(const TileBuffers& tile, Plane<T>& plane, T value) {
+  const hn::Rebind<T, DF> d;
+  constexpr int kAhead = 8, kLine = 64 / int(sizeof(T));
+  if (plane.empty()) return;
+  for (int row = 0; row < tile.height; ++row) {
+    for (int x = 0; row + kAhead < tile.height && x < tile.width; x += kLine)
+      __builtin_prefetch(plane.row(tile.y + row + kAhead) + tile.x + x, 1);
+    for (int x = 0; x < tile.width; x += int(hn::Lanes(d))) hn::StoreU(hn::Set(d, value), d, plane.row(tile.y + row) + tile.x + x);
+  }
+}
+
+void ResolveEmpty(const TileBuffers& tile, GBuffer& out) {
+  fill(tile, out.depth, std::numeric_limits<float>::infinity());
+  for (int c = 0; c < 3; ++c)
+    for (Plane<float>* p : {&out.normal[c], &out.albedo[c], &out.emissive[c], &out.position[c]}) fill(tile, *p, 0.0f);
+  for (Plane<uint32_t>* p : {&out.triangle, &out.instance, &out.material}) fill(tile, *p, kNoTriangle);
+}
+
 void ResolveTile(const SurfaceContext& context, const TileBuffers& tile, GBuffer& out) {
   storeVisibility(*context.view, tile, out);
   const Wanted wanted(out);
@@ -220,33 +239,12 @@ HWY_AFTER_NAMESPACE();
 
 namespace obscura::raster {
 
+HWY_EXPORT(ResolveEmpty);
 HWY_EXPORT(ResolveTile);
-
-namespace {
-
-template <class T>
-void fill(const TileBuffers& tile, Plane<T>& plane, T value) {
-  if (plane.empty()) return;
-  constexpr int kAhead = 8, kLine = 64 / int(sizeof(T));
-  for (int row = 0; row < tile.height; ++row) {
-    for (int x = 0; row + kAhead < tile.height && x < tile.width; x += kLine)
-      __builtin_prefetch(plane.row(tile.y + row + kAhead) + tile.x + x, 1);
-    std::fill_n(plane.row(tile.y + row) + tile.x, tile.width, value);
-  }
-}
-
-void resolveEmpty(const TileBuffers& tile, GBuffer& out) {
-  fill(tile, out.depth, std::numeric_limits<float>::infinity());
-  for (int c = 0; c < 3; ++c)
-    for (Plane<float>* p : {&out.normal[c], &out.albedo[c], &out.emissive[c], &out.position[c]}) fill(tile, *p, 0.0f);
-  for (Plane<uint32_t>* p : {&out.triangle, &out.instance, &out.material}) fill(tile, *p, kNoTriangle);
-}
-
-}  // namespace
 
 void resolveTile(const SurfaceContext& context, const TileBuffers& tile, bool covered, GBuffer& out, Target target) {
   if (covered) OBSCURA_DISPATCH(ResolveTile, target)(context, tile, out);
-  else resolveEmpty(tile, out);
+  else OBSCURA_DISPATCH(ResolveEmpty, target)(tile, out);
 }
 
 }  // namespace obscura::raster

@@ -187,7 +187,7 @@ HWY_INLINE Shaded shade(const SurfaceContext& context, const Wanted& wanted, con
   if (wanted.normal) {
     const V3 n = interpolatedNormal(t, s);
     out.normal = normalizeOr(n, none);
-    noNormal = hn::And(covered, hn::Not(hn::Gt(dot(out.normal, out.normal), zero)));
+    noNormal = hn::AndNot(hasDirection(n), covered);
     for (int k = 0; k < t.draws; ++k)
       if (t.draw(k).material->doubleSided)
         behind = hn::Or(behind, hn::And(t.showsDraw(t.draw(k)), t.draw(k).mirrored ? hn::Not(s.clockwise) : s.clockwise));

@@ -4,6 +4,19 @@
 
 namespace obscura::raster {
 
+void DrawRuns::find(Span<const Draw> draws) {
+  constexpr uint32_t kMost = 4096;  // runs
+  const uint32_t end = draws.empty() ? 0 : draws[draws.size() - 1].firstTriangle + draws[draws.size() - 1].triangleCount;
+  shift = 0;
+  while (end >> shift >= kMost) ++shift;
+  draw.clear();
+  for (uint32_t k = 0; k < draws.size(); ++k) {
+    const uint32_t lastRun = (draws[k].firstTriangle + (draws[k].triangleCount - 1)) >> shift;
+    while (draw.size() <= lastRun) draw.push_back(k);
+  }
+  draw.push_back(uint32_t(draws.size()) - 1);
+}
+
 WeightPlanes weightPlanes(const View& view, const Draw& draw, const uint32_t vertex[3], int x, int y) {
   const double xc = double(view.xCenterSub(x)) - double(view.xShiftSub), yc = double(view.yCenterSub(y)) - double(view.yShiftSub);
   double w[3], hx[3], hy[3];

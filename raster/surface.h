@@ -10,14 +10,26 @@
 // range, which a centre inside the snapped triangle but outside the true one would make it do.
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "obscura/raster/draw.h"
 #include "obscura/raster/view.h"
 
 namespace obscura::raster {
 
+// Where in the draws to look for a triangle id: of every run of 2^shift ids the draw of the first, and the last draw once more.
+struct DrawRuns {
+  int shift = 0;
+  std::vector<uint32_t> draw;
+
+  void find(Span<const Draw> draws);
+};
+
 struct SurfaceContext {
   const View* view = nullptr;
   Span<const Draw> draws;  // ascending firstTriangle
+  const DrawRuns* runs = nullptr;  // of the draws, or null
   Span<const TextureView> textures;
   const float* srgbToLinear = nullptr;  // SrgbTable::linear
 };
@@ -38,6 +50,11 @@ WeightPlanes weightPlanes(const View& view, const Draw& draw, const uint32_t ver
 inline const Draw& drawOf(const SurfaceContext& context, uint32_t id, const Draw* hint = nullptr) {
   if (hint && id - hint->firstTriangle < hint->triangleCount) return *hint;
   size_t lo = 0, hi = context.draws.size();
+  if (context.runs) {
+    const uint32_t* run = context.runs->draw.data() + (id >> context.runs->shift);
+    lo = run[0];
+    hi = run[1] + 1;
+  }
   while (hi - lo > 1) {
     const size_t mid = (lo + hi) / 2;
     (context.draws[mid].firstTriangle <= id ? lo : hi) = mid;

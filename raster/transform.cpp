@@ -14,11 +14,7 @@ HWY_BEFORE_NAMESPACE();
 namespace obscura::raster {
 namespace HWY_NAMESPACE {
 
-HWY_INLINE int32_t lanesLeast(VI v) {
-  HWY_ALIGN int32_t values[16];
-  hn::Store(v, DI(), values);
-  return *std::min_element(values, values + hn::Lanes(DI()));
-}
+HWY_INLINE int32_t lanesLeast(VI v) { return hn::GetLane(hn::MinOfLanes(DI(), v)); }
 
 void TransformVertices(const View& view, const Draw& draw, const float* x, const float* y, const float* z, int count,
                        TransformedVertices& out) {
@@ -36,7 +32,7 @@ void TransformVertices(const View& view, const Draw& draw, const float* x, const
   const int32_t most = std::numeric_limits<int32_t>::max();
   VF nearest = hn::Set(d, -std::numeric_limits<float>::infinity());
   VI xLeast = hn::Set(di, most), yLeast = xLeast, xGreatest = hn::Set(di, -most), yGreatest = xGreatest;
-  int32_t anyCode = 0, allCodes = -1;
+  VI anyCode = hn::Zero(di), allCodes = hn::Set(di, -1);
   for (int i = 0; i < count; i += lanes) {
     const V3 p = viewPosition(draw, hn::LoadU(d, x + i), hn::LoadU(d, y + i), hn::LoadU(d, z + i));
     const VF zView = hn::Neg(p.z);
@@ -71,20 +67,23 @@ void TransformVertices(const View& view, const Draw& draw, const float* x, const
     nearest = hn::IfThenElse(hn::And(hn::RebindMask(d, real), hn::Gt(key, nearest)), key, nearest);
     hn::Store(key, d, out.key + i);
     hn::Store(code, di, out.code + i);
+    anyCode = hn::Or(anyCode, hn::IfThenElseZero(real, code));
+    allCodes = hn::And(allCodes, hn::IfThenElse(real, code, allCodes));
   }
-  for (int i = 0; i < count; ++i) {
-    anyCode |= out.code[i];
-    allCodes &= out.code[i];
+  HWY_ALIGN int32_t any[16], all[16];
+  hn::Store(anyCode, di, any);
+  hn::Store(allCodes, di, all);
+  out.anyCode = 0;
+  out.allCodes = -1;
+  for (int i = 0; i < lanes; ++i) {
+    out.anyCode |= any[i];
+    out.allCodes &= all[i];
   }
-  out.anyCode = anyCode;
-  out.allCodes = allCodes;
   out.xLeast = lanesLeast(xLeast);
   out.yLeast = lanesLeast(yLeast);
   out.xGreatest = -lanesLeast(hn::Neg(xGreatest));
   out.yGreatest = -lanesLeast(hn::Neg(yGreatest));
-  HWY_ALIGN float keys[16];
-  hn::Store(nearest, d, keys);
-  out.nearestKey = *std::max_element(keys, keys + lanes);
+  out.nearestKey = hn::GetLane(hn::MaxOfLanes(d, nearest));
   out.packed = out.xGreatest - out.xLeast <= 0xFFFF && out.yGreatest - out.yLeast <= 0xFFFF;
   for (int i = 0; out.packed && i < count; i += lanes) {
     const VI x0 = hn::Sub(hn::Load(di, out.xSub + i), hn::Set(di, out.xLeast));
