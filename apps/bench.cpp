@@ -8,6 +8,7 @@
 #include "obscura/apps/bench_raster.h"
 #include "obscura/apps/bench_scaling.h"
 #include "obscura/apps/bench_transfer.h"
+#include "obscura/apps/bench_truth.h"
 
 int main(int argc, char** argv) {
   CLI::App app{"Benchmarks of obscura. Times are medians; to compare, take ratios from one run."};
@@ -23,6 +24,8 @@ int main(int argc, char** argv) {
   scaling.addTo(app, status);
   obscura::apps::AccuracyBenchmark accuracy;
   accuracy.addTo(app, status);
+  obscura::apps::TruthBenchmark truth;
+  truth.addTo(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

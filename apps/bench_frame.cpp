@@ -25,12 +25,6 @@ constexpr Column kColumns[] = {
     {"downsample_ms", &engine::FrameTimings::downsample}, {"display_ms", &engine::FrameTimings::display},
     {"frame_ms", &engine::FrameTimings::frame},
 };
-
-int fail(const engine::Error& error) {
-  std::fprintf(stderr, "obscura-bench: error: %s\n", error.text().c_str());
-  return error.code == engine::ErrorCode::Usage ? 2 : 3;
-}
-
 }  // namespace
 
 void asPeersCompute(FrameOptions& options) {

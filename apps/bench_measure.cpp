@@ -28,6 +28,11 @@ double quantile(std::vector<double> values, double q) {
   return values[std::min(values.size() - 1, size_t(q * double(values.size())))];
 }
 
+int fail(const engine::Error& error) {
+  std::fprintf(stderr, "obscura-bench: error: %s\n", error.text().c_str());
+  return error.code == engine::ErrorCode::Usage ? 2 : error.code == engine::ErrorCode::BadInput ? 3 : 4;
+}
+
 int guarded(const std::function<int()>& body) try { return body(); } catch (const Differs& e) {
   std::fprintf(stderr, "obscura-bench: error: %s\n", e.what());
   return 1;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "obscura/engine/result.h"
 #include "obscura/raster/rasterizer.h"
 
 namespace obscura::apps {
@@ -22,6 +23,9 @@ Spread spreadOf(const std::vector<double>& values);  // not empty
 struct Differs : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
+
+// One line on standard error; the exit code: 2 (usage), 3 (bad input) or 4 (cannot write).
+int fail(const engine::Error& error);
 
 // The exit code that `body` returns. If it throws: one line on standard error, and 1 (Differs) or 3.
 int guarded(const std::function<int()>& body);

@@ -23,11 +23,6 @@ engine::Result<engine::Scene> sceneOf(const std::string& file, int index) {
   return engine::sceneFromGltf(file, load);
 }
 
-int fail(const engine::Error& error) {
-  std::fprintf(stderr, "obscura-bench: error: %s\n", error.text().c_str());
-  return error.code == engine::ErrorCode::Usage ? 2 : 3;
-}
-
 }  // namespace
 
 struct TransferBenchmark::Cell {

@@ -37,6 +37,12 @@ void Progress::step(const char* what) {
   const std::lock_guard<std::mutex> lock(mutex_);
   ++current_;
   what_ = what;
+  fraction_ = -1;
+}
+
+void Progress::at(double fraction) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  fraction_ = fraction;
 }
 
 void Progress::clear() {
@@ -68,9 +74,10 @@ void Progress::run() {
 void Progress::draw() {
   clearLineOnSignal(true);
   drawn_ = true;
-  // How long a step will take is not known: its cell fills from one end to the other and starts again, in two seconds.
+  // Where it is not known how long a step will take, its cell fills from one end to the other in two seconds, again and
+  // again.
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  const int cell = kWidth / steps_, filled = (current_ - 1) * cell, moving = int(seconds * cell / 2) % cell;
+  const int cell = kWidth / steps_, filled = (current_ - 1) * cell, moving = fraction_ < 0 ? int(seconds * cell / 2) % cell : int(fraction_ * cell);
   std::string bar(kWidth, ' ');
   for (int i = 0; i < kWidth && i < filled + moving; ++i) bar[size_t(i)] = '=';
   if (filled + moving < kWidth && filled + moving >= 0) bar[size_t(filled + moving)] = '>';

@@ -19,6 +19,7 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   void step(const char* what);  // the next step begins
+  void at(double fraction);     // how much of it is done, 0 to 1, where that is known; from any thread
   void clear();                 // makes room for a line of text; the bar comes back
   void finish();                // clears the line; nothing is shown any more
 
@@ -29,6 +30,7 @@ class Progress {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   int steps_, current_ = 0;
   std::string what_;
+  double fraction_ = -1;  // negative: not known
   bool done_ = false, drawn_ = false;
   std::mutex mutex_;
   std::condition_variable changed_;

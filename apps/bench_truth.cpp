@@ -1,0 +1,105 @@
+#include "obscura/apps/bench_truth.h"
+
+#include <cstdio>
+
+#include <nlohmann/json.hpp>
+
+#include "obscura/apps/bench_frame.h"
+#include "obscura/apps/bench_measure.h"
+#include "obscura/apps/signals.h"
+#include "obscura/apps/truth_planes.h"
+#include "obscura/engine/gltf.h"
+
+namespace obscura::apps {
+namespace {
+
+constexpr const char* kMembershipNames[] = {"classic", "linear", "sqrt", "exponential"};
+
+int seenPixels(const engine::Frame& frame) {
+  int n = 0;
+  for (int y = 0; y < frame.height; ++y)
+    for (int x = 0; x < frame.width; ++x) n += frame.g.instance.at(x, y) != raster::kNoTriangle;
+  return n;
+}
+
+}  // namespace
+
+TruthBenchmark::TruthBenchmark() { asPeersCompute(options); }
+
+void TruthBenchmark::addTo(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand(
+      "truth", "What the estimators aim at, by tracing rays: O for each membership, the exact W, with standard errors");
+  command->add_option("scene", scene, "a .gltf or .glb file")->required();
+  command->add_option("-o,--output", outputs, "file to write, repeatable: .exr (all planes as layers), .npy or .pfm (STEM.PLANE.EXT)")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  command->add_option("--plane", planes, "what to write: classic, linear, sqrt, exponential, tangent_sphere, transfer or all")
+      ->delimiter(',')
+      ->type_name("NAME,...")
+      ->capture_default_str();
+  command->add_flag("--json", json, "one JSON object instead of a table");
+  command->add_flag("--quiet", quiet, "no progress bar");
+  options.addTo(*command);
+  removeEstimatorOptions(*command);
+  truth.addTo(*command);
+  command->callback([this, &status] { status = guarded([this] { return run(); }); });
+}
+
+int TruthBenchmark::run() {
+  endCleanlyOnSignals();
+  const auto files = planTruthFiles(outputs, planes);
+  if (!files) return fail(files.error());
+  Progress progress(4, quiet);
+  progress.step("loading");
+  engine::LoadOptions load;
+  load.scene = options.scene;
+  const auto loaded = engine::sceneFromGltf(scene, load);
+  if (!loaded) return fail(loaded.error());
+  auto resolved = options.resolve(*loaded);
+  if (!resolved) return fail(resolved.error());
+  progress.step("rendering");
+  resolved->frame.aovs = truthAovs();
+  engine::Frame frame;
+  if (const auto done = engine::Renderer(resolved->raster).render(*loaded, resolved->frame, frame); !done) return fail(done.error());
+  if (seenPixels(frame) == 0) return fail({engine::ErrorCode::BadInput, "nothing is visible from this camera", scene, ""});
+
+  const auto found = truthOfFrame(*loaded, *resolved, frame, truth, progress);
+  if (!found) return fail(found.error());
+  for (const TruthFile& file : *files)
+    if (const auto done = writeTruthFile(file, found->truth, frame); !done) return fail(done.error());
+  progress.finish();
+  print(*resolved, frame, *found);
+  return 0;
+}
+
+void TruthBenchmark::print(const ResolvedFrame& resolved, const engine::Frame& frame, const SceneTruth& found) const {
+  const char* membership = kMembershipNames[size_t(resolved.frame.transfer.membership)];
+  nlohmann::ordered_json out;
+  out["scene"] = scene;
+  out["size"] = {frame.width, frame.height};
+  out["pixels_seen"] = seenPixels(frame);
+  out["radius"] = resolved.frame.transfer.radius;
+  out["membership"] = membership;
+  out["rays"] = truth.rays;
+  out["scrambles"] = kTruthScrambles;
+  out["key"] = found.key;
+  out["file"] = found.file;
+  out["cached"] = found.cached;
+  out["build_ms"] = found.buildMs;
+  out["trace_ms"] = found.traceMs;
+  if (!json)
+    std::printf("%s, %dx%d, %d pixels seen, R = %g, W with the %s membership, %d rays a pixel\n%s\n\n%-15s %9s %12s %12s\n",
+                scene.c_str(), frame.width, frame.height, seenPixels(frame), double(resolved.frame.transfer.radius), membership,
+                truth.rays,
+                found.cached ? ("from " + found.file).c_str()
+                             : ("tree " + std::to_string(int(found.buildMs)) + " ms, rays " + std::to_string(int(found.traceMs)) + " ms").c_str(),
+                "plane", "mean", "rms error", "max error");
+  for (const TruthPlane& plane : truthPlanes()) {
+    const TruthSummary s = summaryOf(plane, found.truth, frame);
+    out["planes"].push_back({{"name", plane.name}, {"mean", s.mean}, {"standard_error_rms", s.rmsError}, {"standard_error_max", s.maxError}});
+    if (!json) std::printf("%-15s %9.5f %12.6f %12.6f\n", plane.name, s.mean, s.rmsError, s.maxError);
+  }
+  if (json) std::printf("%s\n", out.dump().c_str());
+}
+
+}  // namespace obscura::apps

@@ -1,0 +1,76 @@
+#include "obscura/apps/scene_truth.h"
+
+#include <atomic>
+#include <cstdio>
+
+#include "obscura/apps/truth_cache.h"
+#include "obscura/raster/stopwatch.h"
+
+namespace obscura::apps {
+
+void TruthOptions::addTo(CLI::App& app) {
+  const char* group = "Truth";
+  app.add_option("--rays", rays, "a pixel, in " + std::to_string(kTruthScrambles) + " independent scrambles: a multiple of that")
+      ->check([](const std::string& text) {
+        char* end = nullptr;
+        const long n = std::strtol(text.c_str(), &end, 10);
+        const bool good = *end == 0 && n >= kTruthScrambles && n <= 1 << 20 && n % kTruthScrambles == 0;
+        return good ? std::string() : "\"" + text + "\" is not a multiple of " + std::to_string(kTruthScrambles) + " up to 1048576";
+      })
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--cache", cache, "folder to keep truths in [$XDG_CACHE_HOME/obscura, else ~/.cache/obscura]")
+      ->type_name("DIR")
+      ->group(group);
+  app.add_flag("--no-cache", noCache, "trace it, and keep nothing")->group(group);
+}
+
+void removeEstimatorOptions(CLI::App& app) {
+  for (const CLI::Option* o : app.get_options([](const CLI::Option* o) { return o->get_group() == "Ambient transfer"; }))
+    if (o->get_name() != "--radius" && o->get_name() != "--membership") app.remove_option(app.get_option(o->get_name()));
+  for (const char* name : {"--supersample", "--border", "--background", "--ambient-light", "--separation", "--reference"})
+    app.remove_option(app.get_option(name));
+}
+
+engine::Result<SceneTruth> truthOfFrame(const engine::Scene& scene, const ResolvedFrame& resolved, const engine::Frame& frame,
+                                        const TruthOptions& options, Progress& progress) {
+  TruthSettings settings;
+  settings.radius = resolved.frame.transfer.radius;
+  settings.membership = resolved.frame.transfer.membership;
+  settings.rays = options.rays;
+  settings.threads = resolved.raster.threads;
+
+  progress.step("looking for the truth");
+  const RaySurface surface(scene, resolved.frame.camera);
+  SceneTruth out;
+  out.key = truthKey(scene, surface, resolved.frame, frame, settings);
+  const std::string folder = options.noCache ? "" : options.cache.value_or(defaultCacheFolder());
+  if (!folder.empty()) {
+    out.file = truthFile(folder, out.key);
+    if (auto found = loadTruth(out.file, out.key, frame.width, frame.height)) {
+      out.truth = std::move(*found);
+      out.cached = true;
+      return out;
+    }
+  }
+
+  progress.step("tracing the truth");
+  const RayScene rays(surface, settings.threads);
+  out.buildMs = rays.buildMs();
+  const TruthStarts starts(scene, surface, resolved.frame, frame);
+  raster::Stopwatch watch;
+  std::atomic<int> rows{0};
+  out.truth = traceTruth(surface, rays, starts, frame.width, frame.height, settings,
+                         [&](int n) { progress.at(double(rows += n) / frame.height); });
+  out.traceMs = watch.lap();
+  if (folder.empty()) return out;
+  if (const auto stored = storeTruth(out.file, out.key, out.truth); !stored) {
+    if (options.cache) return stored.error();
+    progress.clear();
+    std::fprintf(stderr, "obscura-bench: warning: the truth is not kept: %s\n", stored.error().text().c_str());
+    out.file.clear();
+  }
+  return out;
+}
+
+}  // namespace obscura::apps

@@ -1,0 +1,40 @@
+// In:  a frame of a scene.
+// Out: its truth, from the cache or traced; the options of the programs that want one.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "obscura/apps/frame_options.h"
+#include "obscura/apps/progress.h"
+#include "obscura/apps/truth.h"
+
+namespace obscura::apps {
+
+struct TruthOptions {
+  int rays = 512;
+  std::optional<std::string> cache;  // folder; empty: truth_cache.h's
+  bool noCache = false;
+
+  // Also takes away from `app`, which has the options of a frame, those that a truth has none of.
+  void addTo(CLI::App& app);
+};
+
+// Options that say how something is estimated, none of which a truth depends on.
+void removeEstimatorOptions(CLI::App& app);
+
+struct SceneTruth {
+  Truth truth;
+  std::string key, file;  // file: empty without a cache
+  bool cached = false;
+  double buildMs = 0, traceMs = 0;  // of Embree's tree and of the rays; 0 if cached
+};
+
+// The frame has truthAovs() and no supersampling. A cache that cannot be written is an error where it was named, else a
+// warning on standard error. CannotWrite; throws what RayScene and traceTruth throw.
+engine::Result<SceneTruth> truthOfFrame(const engine::Scene& scene, const ResolvedFrame& resolved, const engine::Frame& frame,
+                                        const TruthOptions& options, Progress& progress);
+
+}  // namespace obscura::apps

@@ -1,0 +1,154 @@
+#include "obscura/apps/truth.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "obscura/apps/sobol.h"
+#include "obscura/post/transfer_samples.h"
+#include "obscura/raster/parallel.h"
+
+namespace obscura::apps {
+namespace {
+
+using Sums = double[kTruthQuantities];
+
+// What a first hit at the distance d = reach of R tells of every O; `cosine` is the direction's to the normal.
+void addObscurances(double d, double cosine, Sums& sums) {
+  for (int m = 0; m < 4; ++m) sums[m] += d < 1 ? post::membershipOf(post::Membership(m), d) : 1;
+  // The sphere's chord is R cos long; int r^2 dr of its part in sight over that of the sphere, by the density cos / pi:
+  // (min(d, cos)^3 / 3) (pi / cos) / (pi / 6).
+  const double chord = std::min(d, cosine);
+  sums[int(TruthQuantity::TangentSphere)] += cosine > 0 ? 2 * chord * chord * chord / cosine : 0;
+}
+
+struct Path {
+  TruthStart at;
+  glm::dvec3 light{1};  // what of La still has to come from where the path is
+  glm::dvec3 direction{0};
+};
+
+class Tracer {
+ public:
+  Tracer(const RaySurface& surface, const RayScene& rays, const TruthSettings& settings)
+      : surface_(surface), rays_(rays), settings_(settings) {}
+
+  // Adds `count` paths, points first ... of the scramble `seed`.
+  void trace(const TruthStart& start, uint32_t first, int count, uint32_t seed, Sums& sums) {
+    batch_.count = count;
+    for (int i = 0; i < count; ++i) paths_[i] = {start, glm::dvec3(1), {}}, alive_[i] = true;
+    for (int hits = 0; hits < kTruthHits; ++hits) {
+      bool any = false;
+      for (int i = 0; i < count; ++i) {
+        batch_.reach[i] = -1;
+        if (alive_[i] && survives(i, first + uint32_t(i), hashed(seed, uint32_t(2 * hits)))) {
+          aim(i, sobolPoint(first + uint32_t(i), hashed(seed, uint32_t(2 * hits + 1))));
+          any = true;
+        }
+      }
+      if (!any) return;
+      rays_.intersect(batch_);
+      for (int i = 0; i < count; ++i)
+        if (alive_[i]) meet(i, hits == 0, sums);
+    }
+    for (int i = 0; i < count; ++i)
+      if (alive_[i]) addLight(paths_[i].light, sums);
+  }
+
+ private:
+  static void addLight(const glm::dvec3& light, Sums& sums) {
+    for (int c = 0; c < 3; ++c) sums[int(TruthQuantity::TransferR) + c] += light[c];
+  }
+
+  // Russian roulette, once there is little to come.
+  bool survives(int i, uint32_t index, uint32_t seed) {
+    constexpr double kLittle = 1.0 / 16;
+    glm::dvec3& light = paths_[i].light;
+    const double most = std::max({light.x, light.y, light.z});
+    if (most >= kLittle) return true;
+    alive_[i] = sobolPoint(index, seed).x * kLittle < most;
+    light *= kLittle / std::max(most, 1e-300);
+    return alive_[i];
+  }
+
+  void aim(int i, const glm::dvec2& xi) {
+    Path& p = paths_[i];
+    p.direction = cosineDirection(p.at.normal, xi);
+    for (int c = 0; c < 3; ++c) {
+      batch_.origin[c][i] = float(p.at.position[c]);
+      batch_.direction[c][i] = float(p.direction[c]);
+    }
+    if (glm::dot(p.direction, p.at.outside) > 0) batch_.reach[i] = settings_.radius;
+  }
+
+  void meet(int i, bool first, Sums& sums) {
+    Path& p = paths_[i];
+    const bool below = batch_.reach[i] < 0, hit = !below && batch_.instance[i] != RayBatch::kMiss;
+    const double d = below ? 0 : hit ? double(batch_.reach[i]) / settings_.radius : 1;
+    if (first) addObscurances(d, glm::dot(p.direction, p.at.normal), sums);
+    const double open = d < 1 ? post::membershipOf(settings_.membership, d) : 1;
+    addLight(p.light * open, sums);
+    if (hit) p.at = startAtHit(surface_, batch_.point(i), p.direction);
+    p.light *= (1 - open) * glm::dvec3(p.at.albedo);
+    alive_[i] = (hit || below) && open < 1 && std::max({p.light.x, p.light.y, p.light.z}) > 0;
+  }
+
+  const RaySurface& surface_;
+  const RayScene& rays_;
+  const TruthSettings& settings_;
+  RayBatch batch_;
+  Path paths_[RayBatch::kSize];
+  bool alive_[RayBatch::kSize];
+};
+
+void tracePixel(Tracer& tracer, const TruthStart& start, uint32_t pixelSeed, const TruthSettings& s, int x, int y, Truth& out) {
+  const int perScramble = s.rays / kTruthScrambles;
+  double mean[kTruthQuantities] = {}, square[kTruthQuantities] = {};
+  for (int k = 0; k < kTruthScrambles; ++k) {
+    Sums sums = {};
+    for (int i = 0; i < perScramble; i += RayBatch::kSize)
+      tracer.trace(start, uint32_t(i), std::min(RayBatch::kSize, perScramble - i), hashed(pixelSeed, uint32_t(k)), sums);
+    for (int q = 0; q < kTruthQuantities; ++q) {
+      const double v = sums[q] / perScramble;
+      mean[q] += v / kTruthScrambles;
+      square[q] += v * v / kTruthScrambles;
+    }
+  }
+  for (int q = 0; q < kTruthQuantities; ++q) {
+    out.value[q].at(x, y) = float(mean[q]);
+    out.error[q].at(x, y) = float(std::sqrt(std::max(0.0, square[q] - mean[q] * mean[q]) / (kTruthScrambles - 1)));
+  }
+}
+
+}  // namespace
+
+Truth::Truth(int width, int height) {
+  for (int q = 0; q < kTruthQuantities; ++q) {
+    value[q] = raster::Plane<float>(width, height);
+    error[q] = raster::Plane<float>(width, height);
+  }
+}
+
+const std::vector<engine::Aov>& truthAovs() {
+  using engine::Aov;
+  static const std::vector<Aov> aovs = {Aov::Depth, Aov::Normal, Aov::Albedo, Aov::Triangle, Aov::Instance};
+  return aovs;
+}
+
+Truth traceTruth(const RaySurface& surface, const RayScene& rays, const TruthStarts& starts, int width, int height,
+                 const TruthSettings& settings, const std::function<void(int)>& done) {
+  Truth out(width, height);
+  raster::Parallel(settings.threads).forRanges(size_t(height), 1, [&](size_t begin, size_t end, int) {
+    Tracer tracer(surface, rays, settings);
+    for (int y = int(begin); y < int(end); ++y)
+      for (int x = 0; x < width; ++x)
+        if (starts.seen(x, y)) tracePixel(tracer, starts.at(x, y), starts.seed(x, y), settings, x, y, out);
+        else
+          for (int q = 0; q < kTruthQuantities; ++q) out.value[q].at(x, y) = 1, out.error[q].at(x, y) = 0;
+    done(int(end - begin));
+  });
+  return out;
+}
+
+}  // namespace obscura::apps

@@ -1,0 +1,166 @@
+#include "obscura/apps/truth_cache.h"
+
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <type_traits>
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include "obscura/engine/image_file.h"
+
+namespace obscura::apps {
+namespace {
+
+constexpr char kVersion[] = "obscura truth 1";  // counts up when the method's values change
+
+class Hash {
+ public:
+  Hash() { XXH3_128bits_reset(&state_); }
+  void add(const void* bytes, size_t size) { XXH3_128bits_update(&state_, bytes, size); }
+  template <class T>
+  void add(const T& value) {
+    static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T>, "no padding");
+    add(&value, sizeof value);
+  }
+  template <class T>
+  void addAll(raster::Span<const T> values) {
+    add(uint64_t(values.size()));
+    add(values.data(), values.size() * sizeof(T));
+  }
+  template <class T>
+  void addAll(const std::vector<T>& values) {
+    addAll(raster::Span<const T>(values));
+  }
+  template <class T>
+  void add(const raster::Plane<T>& plane) {
+    for (int y = 0; y < plane.height(); ++y) add(plane.row(y), size_t(plane.width()) * sizeof(T));
+  }
+  std::string text() const {
+    XXH128_canonical_t bytes;
+    XXH128_canonicalFromHash(&bytes, XXH3_128bits_digest(&state_));
+    std::string hex;
+    for (const unsigned char b : bytes.digest) hex += {"0123456789abcdef"[b >> 4], "0123456789abcdef"[b & 15]};
+    return hex;
+  }
+
+ private:
+  XXH3_state_t state_;
+};
+
+void addMaterial(Hash& hash, const raster::Material& m) {
+  hash.add(&m.baseColor, sizeof m.baseColor);
+  hash.add(m.alphaCutoff);
+  hash.add(m.alphaMode);
+  hash.add(m.unlit);
+  hash.add(m.baseColorMap.texture);
+  hash.add(m.baseColorMap.uvSet);
+  hash.add(m.baseColorMap.uvFromUv.data(), sizeof m.baseColorMap.uvFromUv);
+}
+
+void addTexture(Hash& hash, const raster::TextureView& t) {
+  hash.add(t.width);
+  hash.add(t.height);
+  hash.add(t.srgb);
+  hash.add(t.wrapU);
+  hash.add(t.wrapV);
+  hash.add(t.magFilter);
+  hash.add(t.texels.data(), size_t(t.width) * size_t(t.height) * 4);  // the level that rays read
+}
+
+std::vector<uint8_t> payloadOf(const Truth& t) {
+  std::vector<uint8_t> bytes;
+  for (const auto* planes : {t.value, t.error})
+    for (int q = 0; q < kTruthQuantities; ++q)
+      for (int y = 0; y < planes[q].height(); ++y) {
+        const auto* row = reinterpret_cast<const uint8_t*>(planes[q].row(y));
+        bytes.insert(bytes.end(), row, row + size_t(planes[q].width()) * sizeof(float));
+      }
+  return bytes;
+}
+
+std::string headerOf(const std::string& key, int width, int height, const std::vector<uint8_t>& payload) {
+  Hash hash;
+  hash.addAll(payload);
+  return std::string(kVersion) + "\n" + key + "\n" + std::to_string(width) + "x" + std::to_string(height) + " " + hash.text() + "\n";
+}
+
+}  // namespace
+
+std::string truthKey(const engine::Scene& scene, const RaySurface& surface, const engine::FrameSettings& f,
+                     const engine::Frame& frame, const TruthSettings& s) {
+  Hash hash;
+  hash.add(kVersion, sizeof kVersion);
+  for (size_t i = 0; i < scene.instances.size(); ++i) {
+    const engine::Mesh& m = scene.meshes[scene.instances[i].mesh];
+    hash.addAll(surface.positions(i));  // camera space: they hold the instance's and the camera's place
+    const glm::dmat4& at = scene.instances[i].worldFromObject;
+    hash.add(&at, sizeof at);
+    hash.addAll(m.indices);
+    hash.addAll(m.normals);
+    hash.addAll(m.colors);
+    for (const auto& uvs : m.uvs) hash.addAll(uvs);
+    hash.add(m.material);
+  }
+  for (const raster::Material& m : scene.materials) addMaterial(hash, m);
+  for (const engine::Texture& t : scene.textures) addTexture(hash, t.view);
+  const raster::Camera& c = f.camera;
+  hash.add(&c.viewFromWorld, sizeof c.viewFromWorld);
+  hash.add(c.projection);
+  for (const float v : {c.xScale, c.yScale, c.xShift, c.yShift, c.zNear, c.zFar}) hash.add(v);
+  for (const int v : {frame.width, frame.height, frame.x, frame.y, frame.imageWidth, frame.imageHeight}) hash.add(v);
+  hash.add(frame.g.depth);
+  hash.add(frame.g.triangle);
+  for (int k = 0; k < 3; ++k) hash.add(frame.g.normal[k]), hash.add(frame.g.albedo[k]);
+  hash.add(s.radius);
+  hash.add(s.membership);
+  hash.add(s.rays);
+  return hash.text();
+}
+
+std::string defaultCacheFolder() {
+  const auto absolute = [](const char* variable) {
+    const char* value = std::getenv(variable);
+    return std::string(value && value[0] == '/' ? value : "");
+  };
+  if (const std::string cache = absolute("XDG_CACHE_HOME"); !cache.empty()) return cache + "/obscura";
+  const std::string home = absolute("HOME");
+  return home.empty() ? home : home + "/.cache/obscura";
+}
+
+std::string truthFile(const std::string& folder, const std::string& key) { return folder + "/truth-" + key + ".bin"; }
+
+std::optional<Truth> loadTruth(const std::string& file, const std::string& key, int width, int height) {
+  std::error_code error;
+  const uintmax_t size = std::filesystem::file_size(file, error);
+  const size_t bytes = size_t(width) * size_t(height) * 4 * 2 * kTruthQuantities;
+  if (error || size < bytes || size > bytes + 4096) return std::nullopt;
+  std::ifstream in(file, std::ios::binary);
+  std::string header(size - bytes, '\0');
+  std::vector<uint8_t> payload(bytes);
+  in.read(header.data(), std::streamsize(header.size()));
+  in.read(reinterpret_cast<char*>(payload.data()), std::streamsize(payload.size()));
+  if (!in || header != headerOf(key, width, height, payload)) return std::nullopt;
+  Truth t(width, height);
+  const uint8_t* from = payload.data();
+  for (auto* planes : {t.value, t.error})
+    for (int q = 0; q < kTruthQuantities; ++q)
+      for (int y = 0; y < height; ++y, from += size_t(width) * 4) std::memcpy(planes[q].row(y), from, size_t(width) * 4);
+  return t;
+}
+
+engine::Result<engine::Done> storeTruth(const std::string& file, const std::string& key, const Truth& truth) {
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+  std::filesystem::create_directories(folder, error);
+  if (error) return engine::Error{engine::ErrorCode::CannotWrite, "cannot make the folder: " + error.message(), folder.string(), ""};
+  const std::vector<uint8_t> payload = payloadOf(truth);
+  const std::string header = headerOf(key, truth.value[0].width(), truth.value[0].height(), payload);
+  std::vector<uint8_t> bytes(header.begin(), header.end());
+  bytes.insert(bytes.end(), payload.begin(), payload.end());
+  return engine::writeFileAtomically(file, {bytes.data(), bytes.size()});
+}
+
+}  // namespace obscura::apps
