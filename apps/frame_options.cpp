@@ -277,9 +277,11 @@ void addAmbient(CLI::App& app, FrameOptions& o) {
   addChoice(app, "--silhouette-bound", onOff, o.transfer.silhouetteBound,
             "what lies R or more before a test point does not block it; off: it does, and casts false silhouettes")
       ->group(group);
-  addChoice(app, "--estimator", {{"paper", Estimator::Paper}, {"sobol", Estimator::Sobol}, {"box", Estimator::Box}},
+  addChoice(app, "--estimator", {{"paper", Estimator::Paper}, {"sobol", Estimator::Sobol}, {"box", Estimator::Box},
+             {"lines", Estimator::Lines}},
             o.transfer.estimator,
-            "where the rays come from: one set for all pixels, a Sobol net dealt to a 4x4 pattern, or one that suits its box")
+            "where the rays come from: one set for all pixels, a Sobol net dealt to a 4x4 pattern, or one that suits its box; "
+            "or rays through the eye, tested all along (linear membership)")
       ->group(group);
   addChoice(app, "--interleave", onOff, o.transfer.interleave, "other rays in each pixel of a 4x4 pattern")
       ->group(group);

@@ -62,6 +62,8 @@ const char* wrongSetting(const FrameSettings& s) {
   if (!(t.radius > 0 && t.radius < 1e30f)) return "the radius must be positive and finite";
   if (!(t.bias >= 0 && t.bias < 1e30f)) return "the bias must be 0 or more and finite";
   if (wants(s, Aov::Depth2) && !(s.separation > 0 && s.separation < 1e30f)) return "the separation must be positive and finite";
+  if (t.estimator == post::Estimator::Lines && t.membership != post::Membership::Linear)
+    return "line samples have the linear membership: choose that, or another estimator";
   if (!(t.filterThreshold > 0)) return "the filter threshold must be positive";
   for (int c = 0; c < 3; ++c)
     if (!(s.ambientLight[c] >= 0 && s.ambientLight[c] < 1e30f) || !(s.background[c] >= 0 && s.background[c] < 1e30f))

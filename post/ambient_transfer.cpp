@@ -11,6 +11,7 @@
 
 #include <hwy/cache_control.h>
 
+#include "obscura/post/depth_map-inl.h"
 #include "obscura/post/open_block-inl.h"
 #include "obscura/post/ray_hits-inl.h"
 #include "obscura/post/ray_points-inl.h"
@@ -20,63 +21,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace obscura::post {
 namespace HWY_NAMESPACE {
-
-// Depth map as the containment test sees it.
-template <bool kPerspective>
-struct DepthMap {
-  const float* depth;
-  VF xScale, yScale, xCenter, yCenter, firstX, firstY, lastX, lastY, bias, deepest, zNear;
-  VI stride, origin;  // origin: element of the image's pixel (0, 0), were it in the G-buffer, times -1
-  bool negative;      // the G-buffer reaches beyond the image's upper or left edge
-
-  explicit DepthMap(const TransferInput& in) {
-    const DF d;
-    const Projector& p = in.projector;
-    depth = in.g->depth.data();
-    xScale = hn::Set(d, p.xScale), yScale = hn::Set(d, p.yScale);
-    xCenter = hn::Set(d, p.xCenter), yCenter = hn::Set(d, p.yCenter);
-    firstX = hn::Set(d, float(p.xFirst)), firstY = hn::Set(d, float(p.yFirst));
-    lastX = hn::Set(d, float(p.xFirst + p.width - 1)), lastY = hn::Set(d, float(p.yFirst + p.height - 1));
-    origin = hn::Set(DI(), p.yFirst * int32_t(in.g->depth.stride()) + p.xFirst);
-    negative = p.xFirst < 0 || p.yFirst < 0;
-    bias = hn::Set(d, in.settings.bias), zNear = hn::Set(d, p.zNear);
-    deepest = hn::Set(d, in.settings.silhouetteBound ? in.settings.radius : std::numeric_limits<float>::infinity());
-    stride = hn::Set(DI(), int32_t(in.g->depth.stride()));
-  }
-
-  // Element of the nearest texel, clamped to the G-buffer.
-  HWY_INLINE VI texelOf(const V3& p) const {
-    const DF d;
-    VF u = p.x, v = p.y;
-    if (kPerspective) {
-      const VF inverse = hn::Div(hn::Set(d, 1.0f), p.z);
-      u = hn::Mul(u, inverse);
-      v = hn::Mul(v, inverse);
-    }
-    u = hn::Add(hn::Mul(u, xScale), xCenter);
-    v = hn::Add(hn::Mul(v, yScale), yCenter);
-    if (HWY_UNLIKELY(negative)) u = hn::Floor(u), v = hn::Floor(v);
-    return hn::Sub(hn::Add(hn::Mul(floorOf(v, firstY, lastY), stride), floorOf(u, firstX, lastX)), origin);
-  }
-
-  // Inner exactly when bias < z - z* < R; the upper bound keeps far foreground objects from casting silhouettes. Without
-  // it the difference need only be finite.
-  HWY_INLINE MF inner(VF z, VI texel) const {
-    const VF behind = hn::Sub(z, hn::GatherIndex(DF(), depth, texel));
-    return hn::And(hn::And(hn::Gt(behind, bias), hn::Lt(behind, deepest)), hn::Gt(z, zNear));
-  }
-
- private:
-  // Truncation is the floor of what is not negative, and of integers. NaN becomes the first.
-  HWY_INLINE static VI floorOf(VF c, VF first, VF last) {
-#if HWY_ARCH_X86  // takes the second operand for NaN
-    const VF from = hn::Max(c, first);
-#else
-    const VF from = hn::IfThenElse(hn::Gt(c, first), c, first);
-#endif
-    return truncated(hn::Min(from, last));
-  }
-};
 
 // Where the pixels of a vector are, and their frame.
 struct Pixels {
@@ -114,7 +58,7 @@ template <class Points, bool kPerspective, bool kOneStep, bool kNeighbour>
 class Kernel {
  public:
   Kernel(const TransferInput& in, TransferSums& out)
-      : in_(in), g_(*in.g), out_(out), map_(in), points_(in), reach_(points_.all()) {}
+      : in_(in), g_(*in.g), out_(out), map_(in), points_(in, in.settings.steps), reach_(points_.all()) {}
 
   TransferStatistics rows(int y0, int y1) {
     if (in_.bounds) blocks_.resize(size_t(in_.bounds->c.width()));
@@ -300,6 +244,7 @@ TransferStatistics AmbientTransfer(const TransferInput& in, int y0, int y1, Tran
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include "obscura/post/line_samples.h"
 #include "obscura/raster/dispatch.h"
 #include "obscura/raster/float_environment.h"
 
@@ -308,6 +253,7 @@ namespace obscura::post {
 HWY_EXPORT(AmbientTransfer);
 
 TransferStatistics ambientTransfer(const TransferInput& in, int y0, int y1, TransferSums& out, raster::Target target) {
+  if (in.settings.estimator == Estimator::Lines) return lineSamples(in, y0, y1, out, target);
   const raster::FloatEnvironment environment;
   return OBSCURA_DISPATCH(AmbientTransfer, target)(in, y0, y1, out);
 }

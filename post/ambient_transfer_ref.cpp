@@ -5,26 +5,13 @@
 #include <glm/vec3.hpp>
 
 #include "obscura/post/ambient_transfer.h"
+#include "obscura/post/depth_map_ref.h"
+#include "obscura/post/line_samples.h"
 #include "obscura/post/sample_sets.h"
 #include "obscura/raster/float_environment.h"
 
 namespace obscura::post {
 namespace {
-
-struct Texel {
-  int x, y;
-};
-
-// scPos -> ssPos: the nearest texel of the depth map, clamped at its edges.
-Texel project(const Projector& p, const glm::vec3& point) {
-  const float inverse = p.perspective ? 1 / point.z : 1;
-  const float u = std::floor(point.x * inverse * p.xScale + p.xCenter), v = std::floor(point.y * inverse * p.yScale + p.yCenter);
-  auto clamp = [](float c, int first, int size) {
-    const int end = first + size;
-    return (c > float(first) ? (c < float(end) ? int(c) : end - 1) : first) - first;
-  };
-  return {clamp(u, p.xFirst, p.width), clamp(v, p.yFirst, p.height)};
-}
 
 void shade(const TransferInput& in, int x, int y, TransferSums& out) {
   const raster::GBuffer& g = *in.g;
@@ -79,6 +66,7 @@ void shade(const TransferInput& in, int x, int y, TransferSums& out) {
 }  // namespace
 
 void ambientTransferRef(const TransferInput& in, int y0, int y1, TransferSums& out) {
+  if (in.settings.estimator == Estimator::Lines) return lineSamplesRef(in, y0, y1, out);
   const raster::FloatEnvironment environment;
   for (int y = y0; y < y1; ++y)
     for (int x = 0; x < in.g->width; ++x) {

@@ -20,9 +20,9 @@ class SharedPoints {
  public:
   static constexpr bool kTurned = true;
 
-  explicit SharedPoints(const TransferInput& in) {
+  SharedPoints(const TransferInput& in, int steps) {
     for (const glm::vec3& offset : in.offsets)
-      for (int k = 1; k <= in.settings.steps; ++k) points_.push_back(offset * (float(k) / float(in.settings.steps)));
+      for (int k = 1; k <= steps; ++k) points_.push_back(offset * (float(k) / float(steps)));
   }
   const std::vector<glm::vec3>& all() const { return points_; }
 
@@ -42,7 +42,7 @@ class DealtPoints {
  public:
   static constexpr bool kTurned = false;
 
-  explicit DealtPoints(const TransferInput& in) : points_(SharedPoints(in).all()), perRow_(points_.size() / 16) {
+  DealtPoints(const TransferInput& in, int steps) : points_(SharedPoints(in, steps).all()), perRow_(points_.size() / 16) {
     rows_.reserve(4 * perRow_);
     for (size_t row = 0; row < 4; ++row)
       for (size_t point = 0; point < perRow_; ++point) {

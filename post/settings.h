@@ -25,6 +25,7 @@ enum class Estimator : uint8_t {
   Paper,  // one set of n points, turned by another angle in each pixel of a 4x4 pattern (long paper, section 5)
   Sobol,  // one scrambled Sobol net of 16 n points, dealt to the 16 pixels of the pattern (dealt_samples.h)
   Box,    // the same with the scramble that errs least over the 4x4 box
+  Lines,  // rays through the eye instead, each tested all along (line_samples.h); dealt alike; linear membership only
 };
 
 // What a pixel of the filter's window must have in common with the pixel itself to count.

@@ -48,6 +48,11 @@ std::vector<glm::vec3> transferSamples(const AmbientSettings& settings) {
   const raster::FloatEnvironment environment;
   std::vector<glm::vec3> offsets;
   for (const glm::vec3& xi : samplePoints(settings)) {
+    if (settings.estimator == Estimator::Lines) {
+      const double angle = kTwoPi * xi.y, r = xi.z;
+      offsets.push_back({float(raster::exactCos(angle) * r), float(raster::exactSin(angle) * r), float(1 / r)});
+      continue;
+    }
     const double angle = kTwoPi * xi.x, sine = std::sqrt(double(xi.y)), cosine = std::sqrt(1 - double(xi.y));
     const double r = inverseMembership(settings.membership, xi.z) * settings.radius;
     offsets.push_back({float(raster::exactCos(angle) * sine * r), float(raster::exactSin(angle) * sine * r), float(cosine * r)});

@@ -13,7 +13,7 @@ namespace obscura::post {
 // Offsets in the frame (T, B, N), scene units: with (xi_x, xi_y, xi_z) of the sample set,
 //   w = T cos(2 pi xi_x) sqrt(xi_y) + B sin(2 pi xi_x) sqrt(xi_y) + N sqrt(1 - xi_y),   r = mu^-1(xi_z) in [0, R].
 // Estimator::Paper: n, for all pixels. Otherwise 16 n: those of the pixel (x, y) are [p n, p n + n), p = (x mod 4) +
-// 4 (y mod 4); without interleaving all pixels have those of p = 0.
+// 4 (y mod 4); without interleaving all pixels have those of p = 0. Estimator::Lines: see lineSamples.
 std::vector<glm::vec3> transferSamples(const AmbientSettings& settings);
 
 // mu^-1(xi) / R, xi in [0, 1): the distance that importance sampling draws.

@@ -102,7 +102,8 @@ engine::FrameSettings settingsOf(const TestScene& scene, uint32_t seed) {
   t.interleave = seed % 5 != 4;
   t.filter = seed % 7 != 6;
   t.filterThreshold = seed % 2 ? 100.f : 0.1f;
-  t.estimator = post::Estimator(seed % 3);
+  t.estimator = post::Estimator(seed % 4);
+  if (t.estimator == post::Estimator::Lines) t.membership = post::Membership::Linear;
   t.filterGuide = seed % 4 == 1 ? post::FilterGuide::Plane : post::FilterGuide::Depth;
   return s;
 }

@@ -99,6 +99,25 @@ TEST_CASE("open plane: O and W are exactly 1 where it faces the camera") {
   }
 }
 
+TEST_CASE("open plane: by every estimator and filter guide O and W are exactly 1 where it faces the camera") {
+  for (int e = 0; e < 4; ++e)
+    for (const int samples : {1, 3, 8}) {
+      ClosedScene c({0.5f, 0.5f, 0.5f}, 60, 45);
+      c.quad({-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0});
+      c.look({0, 0, 4}, {0, 0, 0});
+      AmbientSettings s = manySamples();
+      s.estimator = post::Estimator(e);
+      s.samples = samples;
+      s.filterGuide = e % 2 ? post::FilterGuide::Plane : post::FilterGuide::Depth;
+      c.run(s);
+      INFO("estimator " << e << " n " << samples);
+      forEach(c.frame.g, [&](int x, int y) {
+        REQUIRE(c.frame.transfer.obscurance.at(x, y) == 1);
+        REQUIRE(c.frame.transfer.w[1].at(x, y) == 1);
+      });
+    }
+}
+
 TEST_CASE("open plane: tilted by 30 to 75 degrees O stays within 0.02 of 1, at a bias of two pixels of depth") {
   // The depth map is a staircase: a point just above the plane may project to a texel whose depth lies before it by up
   // to the plane's slope times a pixel. The bias is what takes care of that.
@@ -138,8 +157,30 @@ TEST_CASE("corner: O of a point at distance h from a wall matches quadrature wit
   }
 }
 
+TEST_CASE("corner: dealt samples and lines estimate the same O, within 0.015 at n = 16") {
+  for (auto estimator : {post::Estimator::Sobol, post::Estimator::Box, post::Estimator::Lines}) {
+    ClosedScene c({0.5f, 0.5f, 0.5f}, 240, 180);
+    c.quad({0, 0, -4}, {0, 0, 4}, {4, 0, 4}, {4, 0, -4});
+    c.quad({0, 0, -4}, {0, 4, -4}, {0, 4, 4}, {0, 0, 4});
+    c.look({2.2, 1.6, 0}, {0.2, 0, 0}, 0.5);
+    AmbientSettings s = manySamples();
+    s.estimator = estimator;
+    s.samples = 16;
+    s.filterGuide = post::FilterGuide::Plane;
+    c.run(s);
+    for (double h : {0.1, 0.2, 0.3, 0.45, 0.6}) {
+      double o = 0;
+      for (int i = -10; i <= 10; ++i) o += c.at({h, 0, i * 0.01}).o / 21;
+      INFO("estimator " << int(estimator) << " h " << h << " measured " << o << " expected " << cornerObscurance(s.membership, h / 0.5));
+      CHECK(std::fabs(o - cornerObscurance(s.membership, h / 0.5)) < 0.015);
+    }
+  }
+}
+
 TEST_CASE("white room: W is 1 in every pixel, although O is not") {
-  for (auto albedo : {post::TransferAlbedo::Own, post::TransferAlbedo::Neighbour}) {
+  for (auto [albedo, estimator] : {std::pair(post::TransferAlbedo::Own, post::Estimator::Paper),
+                                   std::pair(post::TransferAlbedo::Neighbour, post::Estimator::Paper),
+                                   std::pair(post::TransferAlbedo::Neighbour, post::Estimator::Lines)}) {
     ClosedScene c({1, 1, 1});
     const glm::vec3 lo(-1, -1, -1), hi(1, 1, 1);
     c.quad({lo.x, lo.y, lo.z}, {hi.x, lo.y, lo.z}, {hi.x, hi.y, lo.z}, {lo.x, hi.y, lo.z});
@@ -150,6 +191,7 @@ TEST_CASE("white room: W is 1 in every pixel, although O is not") {
     c.look({0, 0, 0.95}, {0, 0, -1}, 1.4);
     AmbientSettings s = manySamples();
     s.albedo = albedo;
+    s.estimator = estimator;
     c.run(s);
     double darkest = 1;
     forEach(c.frame.g, [&](int x, int y) {

@@ -23,7 +23,7 @@ AmbientSettings settingsOf(uint32_t seed) {
   s.silhouetteBound = seed % 3 != 1;
   s.interleave = seed % 3 != 0;
   s.filter = seed % 7 != 0;
-  s.estimator = post::Estimator(seed / 2 % 3);
+  s.estimator = post::Estimator(seed / 2 % 4);
   s.filterGuide = seed / 3 % 2 ? post::FilterGuide::Plane : post::FilterGuide::Depth;
   s.filterThreshold = random.real(0.05f, 0.5f);
   return s;
