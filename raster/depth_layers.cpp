@@ -8,7 +8,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "obscura/raster/transform-inl.h"
+#include "obscura/raster/rows-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace obscura::raster {
@@ -39,25 +39,17 @@ void LimitTile(const View& view, const TileBuffers& first, LayerBehind layer, fl
 
 void StoreTileDepth(const View& view, const TileBuffers& tile, bool covered, Plane<float>& out) {
   const DF d;
-  const hn::CappedTag<float, kBlock> quarter;
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  if (!covered) {
-    for (int row = 0; row < tile.height; ++row) std::fill_n(out.row(tile.y + row) + tile.x, tile.width, kInfinity);
-    return;
-  }
-  HWY_ALIGN float zView[kBlock * kBlock];
-  for (int y = 0; y < tile.height; y += kBlock)
-    for (int x = 0; x < tile.width; x += kBlock) {
-      const float* keys = tile.key + tile.at(x, y);
-      for (size_t i = 0; i < kBlock * kBlock; i += hn::Lanes(d)) {
-        const VF key = hn::Load(d, keys + i);
-        const MF empty = hn::Eq(key, hn::Set(d, -kInfinity));
-        hn::Store(hn::IfThenElse(empty, hn::Set(d, kInfinity), turned(view, key)), d, zView + i);
+  const VF infinity = hn::Set(d, std::numeric_limits<float>::infinity());
+  for (int top = 0; top < tile.height; top += kBlock)
+    for (int column = 0; column < tile.width; column += int(hn::Lanes(d))) {
+      VF keys[kBlock];
+      if (covered) rowsOfBlocks(d, tile.key + tile.at(column, top), keys);
+      for (int row = 0; row < std::min(kBlock, tile.height - top); ++row) {
+        const VF zView = covered ? hn::IfThenElse(hn::Eq(keys[row], hn::Neg(infinity)), infinity, turned(view, keys[row])) : infinity;
+        storeRow(d, zView, tile.x + column, tile.y + top + row, out);
       }
-      for (int row = 0; row < std::min(kBlock, tile.height - y); ++row)
-        for (size_t i = 0; i < kBlock; i += hn::Lanes(quarter))
-          hn::StoreU(hn::Load(quarter, zView + size_t(row * kBlock) + i), quarter, out.row(tile.y + y + row) + tile.x + x + int(i));
     }
+  hwy::FlushStream();
 }
 
 }  // namespace HWY_NAMESPACE

@@ -8,42 +8,12 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "obscura/raster/rows-inl.h"
 #include "obscura/raster/shade-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace obscura::raster {
 namespace HWY_NAMESPACE {
-
-// Pixels side by side, one vector for each of the four rows of the blocks that it takes to fill them; at: element of the
-// first. No temporary: a vector that is loaded from what four stores have just written waits for all of them.
-template <class D, class T>
-HWY_INLINE void rowsOfBlocks(D d, const T* at, hn::Vec<D> rows[kBlock]) {
-  constexpr int kLanes = int(hn::MaxLanes(D()));
-#if HWY_TARGET == HWY_AVX3
-  // Blocks are vectors; what is wanted are their transposed quarters.
-  const auto quarters = [&](int block) HWY_ATTR { return hn::BitCast(DI(), hn::Load(d, at + block * kBlock * kBlock)).raw; };
-  const __m512i b0 = quarters(0), b1 = quarters(1), b2 = quarters(2), b3 = quarters(3);
-  const __m512i lower01 = _mm512_shuffle_i32x4(b0, b1, 0x44), upper01 = _mm512_shuffle_i32x4(b0, b1, 0xEE);
-  const __m512i lower23 = _mm512_shuffle_i32x4(b2, b3, 0x44), upper23 = _mm512_shuffle_i32x4(b2, b3, 0xEE);
-  rows[0] = hn::BitCast(d, VI{_mm512_shuffle_i32x4(lower01, lower23, 0x88)});
-  rows[1] = hn::BitCast(d, VI{_mm512_shuffle_i32x4(lower01, lower23, 0xDD)});
-  rows[2] = hn::BitCast(d, VI{_mm512_shuffle_i32x4(upper01, upper23, 0x88)});
-  rows[3] = hn::BitCast(d, VI{_mm512_shuffle_i32x4(upper01, upper23, 0xDD)});
-#elif HWY_TARGET == HWY_AVX2
-  static_assert(kLanes == 2 * kBlock, "a vector holds two rows of a block");
-  for (int half = 0; half < 2; ++half) {
-    const auto b0 = hn::Load(d, at + half * kLanes), b1 = hn::Load(d, at + kBlock * kBlock + half * kLanes);
-    rows[2 * half] = hn::ConcatLowerLower(d, b1, b0);
-    rows[2 * half + 1] = hn::ConcatUpperUpper(d, b1, b0);
-  }
-#else
-  static_assert(kLanes <= kBlock, "a vector lies in a row of a block");
-  for (int row = 0; row < kBlock; ++row) rows[row] = hn::Load(d, at + row * kBlock);
-#endif
-}
-
-// Element, in a row of blocks, of the first pixel of column `column`.
-constexpr int elementOf(int column) { return ((column >> kBlockBits) << (2 * kBlockBits)) + (column & (kBlock - 1)); }
 
 // One row of depth, position and triangle ids.
 HWY_INLINE void storeVisible(const View& view, VF key, VU id, int x, int y, GBuffer& out) {
@@ -54,8 +24,8 @@ HWY_INLINE void storeVisible(const View& view, VF key, VU id, int x, int y, GBuf
   const MF covered = hn::RebindMask(d, hn::Ne(id, hn::Set(du, kNoTriangle)));
   // 0 - key: a plain negation would give two kinds of zero.
   const VF zView = view.perspective ? hn::Div(one, key) : hn::Sub(zero, key);
-  if (!out.triangle.empty()) hn::StoreU(id, du, out.triangle.row(y) + x);
-  if (!out.depth.empty()) hn::StoreU(hn::IfThenElse(covered, zView, infinity), d, out.depth.row(y) + x);
+  if (!out.triangle.empty()) storeRow(du, id, x, y, out.triangle);
+  if (!out.depth.empty()) storeRow(d, hn::IfThenElse(covered, zView, infinity), x, y, out.depth);
   if (out.position[0].empty()) return;
   const VF xc = hn::ConvertTo(d, hn::Add(hn::Set(di, view.xCenterSub(x)), hn::ShiftLeft<kSubBits>(hn::Iota(di, 0))));
   VF px = hn::Div(hn::Sub(xc, hn::Set(d, view.xShiftSub)), hn::Set(d, view.xScaleSub));
@@ -64,28 +34,16 @@ HWY_INLINE void storeVisible(const View& view, VF key, VU id, int x, int y, GBuf
     px = hn::Mul(px, zView);
     py = hn::Mul(py, zView);
   }
-  hn::StoreU(hn::IfThenElseZero(covered, px), d, out.position[0].row(y) + x);
-  hn::StoreU(hn::IfThenElseZero(covered, py), d, out.position[1].row(y) + x);
-  hn::StoreU(hn::IfThenElseZero(covered, hn::Sub(zero, zView)), d, out.position[2].row(y) + x);
-}
-
-// The lines that four rows of depth and ids will fill.
-HWY_INLINE void fetchRows(const TileBuffers& tile, int top, GBuffer& out) {
-  constexpr int kLine = 16;  // pixels
-  for (int row = top; row < std::min(top + kBlock, tile.height); ++row)
-    for (int x = tile.x; x < tile.x + tile.width; x += kLine) {
-      if (!out.depth.empty()) __builtin_prefetch(out.depth.row(tile.y + row) + x, 1);
-      if (!out.triangle.empty()) __builtin_prefetch(out.triangle.row(tile.y + row) + x, 1);
-    }
+  storeRow(d, hn::IfThenElseZero(covered, px), x, y, out.position[0]);
+  storeRow(d, hn::IfThenElseZero(covered, py), x, y, out.position[1]);
+  storeRow(d, hn::IfThenElseZero(covered, hn::Sub(zero, zView)), x, y, out.position[2]);
 }
 
 // Depth, position and triangle ids need nothing but the visibility: whole rows, as memory likes it.
 HWY_INLINE void storeVisibility(const View& view, const TileBuffers& tile, GBuffer& out) {
   const DF d;
   const DU du;
-  fetchRows(tile, 0, out);
   for (int top = 0; top < tile.height; top += kBlock) {
-    fetchRows(tile, top + kBlock, out);
     const int rows = std::min(kBlock, tile.height - top);
     for (int column = 0; column < tile.width; column += int(hn::Lanes(d))) {
       const int at = tile.at(column, top), x = tile.x + column, y = tile.y + top;
@@ -115,12 +73,10 @@ HWY_INLINE void storePlane(const T* blocks, int x, int y, int rows, Plane<T>& pl
   for (int column = 0; column < kCell; column += int(hn::MaxLanes(d))) {
     hn::Vec<decltype(d)> row[kBlock];
     rowsOfBlocks(d, blocks + elementOf(column), row);
-    T* to = plane.row(y) + x + column;
-    const size_t stride = plane.stride();
-    hn::StoreU(row[0], d, to);
-    if (rows > 1) hn::StoreU(row[1], d, to + stride);
-    if (rows > 2) hn::StoreU(row[2], d, to + 2 * stride);
-    if (rows > 3) hn::StoreU(row[3], d, to + 3 * stride);
+    storeRow(d, row[0], x + column, y, plane);
+    if (rows > 1) storeRow(d, row[1], x + column, y + 1, plane);
+    if (rows > 2) storeRow(d, row[2], x + column, y + 2, plane);
+    if (rows > 3) storeRow(d, row[3], x + column, y + 3, plane);
   }
 }
 
@@ -152,15 +108,6 @@ HWY_INLINE void keepDraws(const VectorTriangles& t, Strip& strip, int at) {
   }
   hn::Store(instance, d, strip.instance + at);
   hn::Store(material, d, strip.material + at);
-}
-
-// The lines of memory that a cell's planes will fill; cells jump from row to row, which no prefetcher follows.
-HWY_INLINE void fetchCell(const TileBuffers& tile, int x, int y, GBuffer& out) {
-  if (x >= tile.width) return;
-  const int rows = std::min(kCell, tile.height - y);
-  for (auto* planes : {out.normal, out.albedo, out.emissive})
-    for (int c = 0; c < 3 && !planes[0].empty(); ++c)
-      for (int row = 0; row < rows; ++row) __builtin_prefetch(planes[c].row(tile.y + y + row) + tile.x + x, 1);
 }
 
 // Attributes of the cell whose first pixel is (left, top) of the tile.
@@ -200,13 +147,9 @@ HWY_INLINE void resolveCell(const SurfaceContext& context, const TileBuffers& ti
 template <class T>
 HWY_INLINE void fill(const TileBuffers& tile, Plane<T>& plane, T value) {
   const hn::Rebind<T, DF> d;
-  constexpr int kAhead = 8, kLine = 64 / int(sizeof(T));
   if (plane.empty()) return;
-  for (int row = 0; row < tile.height; ++row) {
-    for (int x = 0; row + kAhead < tile.height && x < tile.width; x += kLine)
-      __builtin_prefetch(plane.row(tile.y + row + kAhead) + tile.x + x, 1);
-    for (int x = 0; x < tile.width; x += int(hn::Lanes(d))) hn::StoreU(hn::Set(d, value), d, plane.row(tile.y + row) + tile.x + x);
-  }
+  for (int row = 0; row < tile.height; ++row)
+    for (int x = 0; x < tile.width; x += int(hn::Lanes(d))) storeRow(d, hn::Set(d, value), tile.x + x, tile.y + row, plane);
 }
 
 void ResolveEmpty(const TileBuffers& tile, GBuffer& out) {
@@ -214,20 +157,18 @@ void ResolveEmpty(const TileBuffers& tile, GBuffer& out) {
   for (int c = 0; c < 3; ++c)
     for (Plane<float>* p : {&out.normal[c], &out.albedo[c], &out.emissive[c], &out.position[c]}) fill(tile, *p, 0.0f);
   for (Plane<uint32_t>* p : {&out.triangle, &out.instance, &out.material}) fill(tile, *p, kNoTriangle);
+  hwy::FlushStream();
 }
 
 void ResolveTile(const SurfaceContext& context, const TileBuffers& tile, GBuffer& out) {
   storeVisibility(*context.view, tile, out);
   const Wanted wanted(out);
-  if (!wanted.surfaces() && !wanted.draws) return;
-  CellTriangles cell;
-  for (int y = 0; y < tile.height; y += kCell) {
-    fetchCell(tile, 0, y, out);
-    for (int x = 0; x < tile.width; x += kCell) {
-      fetchCell(tile, x + kCell, y, out);
-      resolveCell(context, tile, x, y, wanted, cell, out);
-    }
+  if (wanted.surfaces() || wanted.draws) {
+    CellTriangles cell;
+    for (int y = 0; y < tile.height; y += kCell)
+      for (int x = 0; x < tile.width; x += kCell) resolveCell(context, tile, x, y, wanted, cell, out);
   }
+  hwy::FlushStream();
 }
 
 }  // namespace HWY_NAMESPACE
