@@ -35,7 +35,7 @@ struct Worker {
 // Frames of fewer clusters, or whose clusters' boxes add up to less than so many images, are drawn in one round: rounds
 // have a cost of their own, and little would be hidden.
 constexpr size_t kFewClusters = 512;
-constexpr int64_t kFewLayers = 4;
+constexpr int64_t kFewLayers = 100;
 // Clusters that the first rounds look at; later ones look at twice as many each.
 constexpr size_t kFirstClusters = 8192;
 // Rounds that the clusters looked at are dealt out to.
