@@ -65,6 +65,7 @@ TestScene crowd(bool perspectiveView) {
   put(ball, 0, {0.1, 0, 0.05}, 1.0);
   put(wall, 1, {-3, 0, -5}, 1.8);
   put(wall, 2, {2, 0, -4.5}, 1.5);
+  for (int k = 0; k < 110; ++k) put(wall, 1, {0, 0, -40 - 0.1 * k}, 40);  // so deep that it is drawn in rounds
   return s;
 }
 
