@@ -5,6 +5,7 @@
 
 #include "obscura/apps/bench_accuracy.h"
 #include "obscura/apps/bench_frame.h"
+#include "obscura/apps/bench_pareto.h"
 #include "obscura/apps/bench_raster.h"
 #include "obscura/apps/bench_scaling.h"
 #include "obscura/apps/bench_transfer.h"
@@ -26,6 +27,8 @@ int main(int argc, char** argv) {
   accuracy.addTo(app, status);
   obscura::apps::TruthBenchmark truth;
   truth.addTo(app, status);
+  obscura::apps::ParetoBenchmark pareto;
+  pareto.addTo(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -6,14 +6,13 @@
 
 #include "obscura/apps/bench_frame.h"
 #include "obscura/apps/bench_measure.h"
+#include "obscura/apps/setting_names.h"
 #include "obscura/apps/signals.h"
 #include "obscura/apps/truth_planes.h"
 #include "obscura/engine/gltf.h"
 
 namespace obscura::apps {
 namespace {
-
-constexpr const char* kMembershipNames[] = {"classic", "linear", "sqrt", "exponential"};
 
 int seenPixels(const engine::Frame& frame) {
   int n = 0;
@@ -73,7 +72,7 @@ int TruthBenchmark::run() {
 }
 
 void TruthBenchmark::print(const ResolvedFrame& resolved, const engine::Frame& frame, const SceneTruth& found) const {
-  const char* membership = kMembershipNames[size_t(resolved.frame.transfer.membership)];
+  const std::string& membership = nameOf(kMembershipNames, resolved.frame.transfer.membership);
   nlohmann::ordered_json out;
   out["scene"] = scene;
   out["size"] = {frame.width, frame.height};
@@ -89,7 +88,7 @@ void TruthBenchmark::print(const ResolvedFrame& resolved, const engine::Frame& f
   out["trace_ms"] = found.traceMs;
   if (!json)
     std::printf("%s, %dx%d, %d pixels seen, R = %g, W with the %s membership, %d rays a pixel\n%s\n\n%-15s %9s %12s %12s\n",
-                scene.c_str(), frame.width, frame.height, seenPixels(frame), double(resolved.frame.transfer.radius), membership,
+                scene.c_str(), frame.width, frame.height, seenPixels(frame), double(resolved.frame.transfer.radius), membership.c_str(),
                 truth.rays,
                 found.cached ? ("from " + found.file).c_str()
                              : ("tree " + std::to_string(int(found.buildMs)) + " ms, rays " + std::to_string(int(found.traceMs)) + " ms").c_str(),

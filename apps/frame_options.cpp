@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "obscura/apps/setting_names.h"
 #include "obscura/raster/srgb.h"
 #include "obscura/raster/view.h"
 
@@ -99,9 +100,6 @@ CLI::Option* addRead(CLI::App& app, const std::string& name, const std::string& 
   };
   return app.add_option_function<std::string>(name, set, what)->type_name(type);
 }
-
-template <class T>
-using Names = std::vector<std::pair<std::string, T>>;
 
 template <class T>
 CLI::Option* addChoice(CLI::App& app, const std::string& name, const Names<T>& names, T& value,
@@ -245,9 +243,6 @@ void addView(CLI::App& app, FrameOptions& o) {
 }
 
 void addAmbient(CLI::App& app, FrameOptions& o) {
-  using post::Estimator;
-  using post::FilterGuide;
-  using post::Membership;
   using post::Occlusion;
   using post::TransferAlbedo;
   const char* group = "Ambient transfer";
@@ -268,25 +263,21 @@ void addAmbient(CLI::App& app, FrameOptions& o) {
       ->group(group);
   addLength(app, "--radius", false, o.radius, "R, how far occluders reach",
             fraction(engine::kDefaultRadius, "the scene's size (the diagonal of its bounds)"))->group(group);
-  addChoice(app, "--membership", {{"classic", Membership::Classic}, {"linear", Membership::Linear},
-                                  {"sqrt", Membership::Sqrt}, {"exponential", Membership::Exponential}},
-            o.transfer.membership, "how open a direction is by the distance of its occluder")->group(group);
+  addChoice(app, "--membership", kMembershipNames, o.transfer.membership, "how open a direction is by the distance of its occluder")->group(group);
   addLength(app, "--bias", true, o.bias, "how deep behind a surface counts as inside",
             fraction(engine::kDefaultBias, "R"))
       ->group(group);
   addChoice(app, "--silhouette-bound", onOff, o.transfer.silhouetteBound,
             "what lies R or more before a test point does not block it; off: it does, and casts false silhouettes")
       ->group(group);
-  addChoice(app, "--estimator", {{"paper", Estimator::Paper}, {"sobol", Estimator::Sobol}, {"box", Estimator::Box},
-             {"lines", Estimator::Lines}},
-            o.transfer.estimator,
+  addChoice(app, "--estimator", kEstimatorNames, o.transfer.estimator,
             "where the rays come from: one set for all pixels, a Sobol net dealt to a 4x4 pattern, or one that suits its box; "
             "or rays through the eye, tested all along (linear membership)")
       ->group(group);
   addChoice(app, "--interleave", onOff, o.transfer.interleave, "other rays in each pixel of a 4x4 pattern")
       ->group(group);
   addChoice(app, "--filter", onOff, o.transfer.filter, "4x4 box over pixels of nearly the same depth")->group(group);
-  addChoice(app, "--filter-guide", {{"depth", FilterGuide::Depth}, {"plane", FilterGuide::Plane}}, o.transfer.filterGuide,
+  addChoice(app, "--filter-guide", kFilterGuideNames, o.transfer.filterGuide,
             "which pixels the filter adds up: those of nearly the same depth, or of the same plane and normal")
       ->group(group);
   addLength(app, "--filter-threshold", false, o.filterThreshold, "difference of depth that the filter stops at",

@@ -1,5 +1,6 @@
 #include "obscura/apps/scene_truth.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cstdio>
 
@@ -25,9 +26,9 @@ void TruthOptions::addTo(CLI::App& app) {
   app.add_flag("--no-cache", noCache, "trace it, and keep nothing")->group(group);
 }
 
-void removeEstimatorOptions(CLI::App& app) {
+void removeEstimatorOptions(CLI::App& app, const std::vector<std::string>& kept) {
   for (const CLI::Option* o : app.get_options([](const CLI::Option* o) { return o->get_group() == "Ambient transfer"; }))
-    if (o->get_name() != "--radius" && o->get_name() != "--membership") app.remove_option(app.get_option(o->get_name()));
+    if (std::find(kept.begin(), kept.end(), o->get_name()) == kept.end()) app.remove_option(app.get_option(o->get_name()));
   for (const char* name : {"--supersample", "--border", "--background", "--ambient-light", "--separation", "--reference"})
     app.remove_option(app.get_option(name));
 }

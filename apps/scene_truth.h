@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -18,12 +19,12 @@ struct TruthOptions {
   std::optional<std::string> cache;  // folder; empty: truth_cache.h's
   bool noCache = false;
 
-  // Also takes away from `app`, which has the options of a frame, those that a truth has none of.
   void addTo(CLI::App& app);
 };
 
-// Options that say how something is estimated, none of which a truth depends on.
-void removeEstimatorOptions(CLI::App& app);
+// Takes away the options of a frame that say how the ambient transfer is estimated, but for `kept`, and those that say what
+// is done with it: a truth depends on none of them.
+void removeEstimatorOptions(CLI::App& app, const std::vector<std::string>& kept = {"--radius", "--membership"});
 
 struct SceneTruth {
   Truth truth;

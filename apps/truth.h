@@ -43,8 +43,9 @@ struct Truth {
 const std::vector<engine::Aov>& truthAovs();
 
 // Where the rays of a pixel begin: the point of the triangle seen there (by its id, in double: the depth map's point is off
-// by what snapping to 1/256 pixel costs), moved out of it by kTruthOffset times the largest coordinate of point and
-// corners, about 16 roundings. The cosine is that of the G-buffer's normal. Directions below the triangle itself, which a
+// by what snapping to 1/256 pixel costs), moved by kTruthOffset times the largest coordinate of point and corners, about 16
+// roundings, out of it, so that no ray meets where it starts, and by as much to the triangle's middle, so that a point on
+// the edge of a corner is not behind the corner's other side. The cosine is that of the G-buffer's normal. Directions below the triangle itself, which a
 // normal that is not the triangle's has, are blocked at distance 0 by this very point.
 struct TruthStart {
   glm::dvec3 position{0}, normal{0}, outside{0};  // camera space; the normals are unit, `outside` is the triangle's

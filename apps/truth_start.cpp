@@ -14,8 +14,10 @@ constexpr double kPi = 3.14159265358979323846;
 double largest(const glm::dvec3& v) { return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}); }
 
 glm::dvec3 movedOut(const glm::dvec3& p, const glm::dvec3 (&corner)[3], const glm::dvec3& outside) {
-  const double size = std::max({largest(p), largest(corner[0]), largest(corner[1]), largest(corner[2])});
-  return p + outside * (kTruthOffset * size);
+  const double offset = kTruthOffset * std::max({largest(p), largest(corner[0]), largest(corner[1]), largest(corner[2])});
+  const glm::dvec3 inward = (corner[0] + corner[1] + corner[2]) / 3.0 - p;
+  const double length = glm::length(inward);
+  return p + outside * offset + (length > offset ? inward * (offset / length) : glm::dvec3(0));
 }
 
 }  // namespace

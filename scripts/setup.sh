@@ -6,7 +6,7 @@ export LC_ALL=C.UTF-8
 packages=(
   g++ clang clang-14 libclang-rt-14-dev cmake ninja-build
   libglm-dev libtinygltf-dev nlohmann-json3-dev libopenimageio-dev openimageio-tools catch2 libhwy-dev libtbb-dev
-  libcli11-dev libmeshoptimizer-dev libxxhash-dev libpng-dev libturbojpeg0-dev libembree-dev
+  libcli11-dev libmeshoptimizer-dev libxxhash-dev libpng-dev libturbojpeg0-dev libembree-dev gnuplot-nox
 )
 
 # Installs the packages that are missing; does not touch apt when there are none.

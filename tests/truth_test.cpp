@@ -110,6 +110,23 @@ TEST_CASE("truth: a corner of two planes has the closed forms' O and tangent sph
   checkAgainst(t, TruthQuantity::TangentSphere, 1e-3, [&](int x, int y) { return cornerSphere(distance(x, y)); });
 }
 
+TEST_CASE("truth: from the very edge of a corner no ray slips through the other side") {
+  TracedScene t(24, 24, 64);
+  engine::Mesh& m = t.addMesh();
+  TracedScene::addQuad(m, {0, 0, 4}, {4, 0, 4}, {4, 0, -4}, {0, 0, -4});
+  TracedScene::addQuad(m, {0, 0, 4}, {0, 0, -4}, {0, 4, -4}, {0, 4, 4});
+  t.look({1, 1, 7}, {1, 1, 0}, 0.4);  // the edge is a diagonal of the image, through the centres of pixels
+  t.trace();
+  int onEdge = 0;
+  for (int y = 0; y < 24; ++y)
+    for (int x = 0; x < 24; ++x) {
+      if (!t.seen(x, y) || std::max(t.world(x, y).x, t.world(x, y).y) > 1e-4) continue;
+      ++onEdge;
+      CHECK(t.truth[TruthQuantity::Classic].at(x, y) == Approx(0.5).margin(0.12));
+    }
+  CHECK(onEdge >= 4);
+}
+
 TEST_CASE("truth: a ball on a plane casts the O that quadrature finds") {
   TracedScene t(40, 30, 128);
   addBall(t.addMesh(), {0, 0.3, 0}, 0.3, 64);

@@ -1,0 +1,106 @@
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+
+#include "obscura/apps/pareto_report.h"
+#include "obscura/engine/image_file.h"
+
+namespace obscura::apps {
+namespace {
+
+using Points = std::vector<std::pair<double, double>>;
+
+std::string text(const std::string& t) {  // for gnuplot, in double quotes
+  std::string out = "\"";
+  for (const char c : t) out += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c >= ' ' ? c : ' ');
+  return out + "\"";
+}
+
+void addBlock(std::string& script, const std::string& name, const Points& points) {
+  script += "$" + name + " << EOD\n";
+  char line[64];
+  for (const auto& [x, y] : points) {
+    std::snprintf(line, sizeof line, "%.6g %.6g\n", x, std::max(y, 1e-9));
+    script += line;
+  }
+  script += "EOD\n";
+}
+
+void addPanel(std::string& script, const ParetoScene& scene, const std::string& truth, int number) {
+  std::map<std::string, Points> series;
+  Points front;
+  for (const ParetoRow& r : scene.rows) {
+    if (r.truth() != truth) continue;
+    std::string name = r.method;
+    if (r.quantity != ParetoQuantity::Obscurance) name += " " + nameOf(kParetoQuantityNames, r.quantity);
+    if (r.settings.steps > 1) name += ", m = " + std::to_string(r.settings.steps);
+    if (!r.settings.interleave) name += ", not interleaved";
+    series[name + ", " + (r.settings.filter ? r.filter() + " filter" : "no filter")].emplace_back(r.ms(), r.error.rmse);
+    if (r.front) front.emplace_back(r.ms(), r.error.rmse);
+  }
+  const std::string prefix = "panel" + std::to_string(number);
+  int k = 0;
+  std::string plots;
+  for (const auto& [name, points] : series) {
+    addBlock(script, prefix + "s" + std::to_string(k), points);
+    plots += (k ? ", \\\n     " : "plot ") + ("$" + prefix + "s" + std::to_string(k)) + " using 1:2 with linespoints lw 1 pt " +
+             std::to_string(4 + k % 11) + " ps 0.8 title " + text(name);
+    ++k;
+  }
+  std::sort(front.begin(), front.end());
+  addBlock(script, prefix + "front", front);
+  const std::string base = scene.file.substr(scene.file.find_last_of('/') + 1);
+  script += "set title " + text(base + ": " + truth + " by ray tracing, " + std::to_string(scene.width) + "x" + std::to_string(scene.height)) +
+            " noenhanced\n" + plots + ", \\\n     $" + prefix + "front using 1:2 with lines lw 5 lc rgb \"#60000000\" title \"Pareto front\"\n";
+}
+
+std::string scriptOf(const std::string& terminal, const std::vector<ParetoScene>& scenes) {
+  std::vector<std::pair<const ParetoScene*, std::string>> panels;
+  for (const ParetoScene& s : scenes)
+    for (const ParetoRow& r : s.rows)
+      if (std::find(panels.begin(), panels.end(), std::pair{&s, r.truth()}) == panels.end()) panels.emplace_back(&s, r.truth());
+  const size_t columns = std::min<size_t>(2, panels.size()), rows = (panels.size() + columns - 1) / columns;
+  std::string script = "set terminal " + terminal + " size " + std::to_string(900 * columns) + "," + std::to_string(640 * rows) +
+                       " background rgb \"white\"\nset logscale xy\nset grid xtics ytics mxtics mytics lc rgb \"#dddddd\"\n"
+                       "set xlabel \"transfer + filter, ms\"\nset ylabel \"RMSE\"\nset key outside right top noenhanced font \",9\"\n"
+                       "set multiplot layout " + std::to_string(rows) + "," + std::to_string(columns) + "\n";
+  int number = 0;
+  for (const auto& [scene, truth] : panels) addPanel(script, *scene, truth, number++);
+  return script + "unset multiplot\n";
+}
+
+// gnuplot's standard output on this script; empty if it cannot be run or fails.
+std::vector<uint8_t> plotted(const std::string& script) {
+  std::vector<uint8_t> out;
+  char name[] = "/tmp/obscura-plot-XXXXXX";
+  const int file = mkstemp(name);
+  if (file < 0) return out;
+  const bool written = write(file, script.data(), script.size()) == ssize_t(script.size());
+  close(file);
+  if (FILE* pipe = written ? popen((std::string("gnuplot ") + name + " 2> /dev/null").c_str(), "r") : nullptr) {
+    uint8_t part[65536];
+    while (const size_t n = std::fread(part, 1, sizeof part, pipe)) out.insert(out.end(), part, part + n);
+    const int status = pclose(pipe);
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) out.clear();
+  }
+  unlink(name);
+  return out;
+}
+
+}  // namespace
+
+engine::Result<engine::Done> writeParetoPlot(const std::string& path, const std::vector<ParetoScene>& scenes) {
+  const std::string ending = path.substr(path.find_last_of('.') + 1);
+  const std::string script = scriptOf(ending == "png" ? "pngcairo" : "svg", scenes);
+  std::vector<uint8_t> bytes(script.begin(), script.end());
+  if (ending != "gp") bytes = plotted(script);
+  if (bytes.empty())
+    return engine::Error{engine::ErrorCode::CannotWrite, "gnuplot made no plot: is gnuplot-nox installed? FILE.gp is its script", path, ""};
+  return engine::writeFileAtomically(path, {bytes.data(), bytes.size()});
+}
+
+}  // namespace obscura::apps

@@ -1,0 +1,32 @@
+// What the settings of the ambient transfer are called on command lines and in tables.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "obscura/post/settings.h"
+
+namespace obscura::apps {
+
+template <class T>
+using Names = std::vector<std::pair<std::string, T>>;
+
+inline const Names<post::Membership> kMembershipNames = {{"classic", post::Membership::Classic},
+                                                         {"linear", post::Membership::Linear},
+                                                         {"sqrt", post::Membership::Sqrt},
+                                                         {"exponential", post::Membership::Exponential}};
+inline const Names<post::Estimator> kEstimatorNames = {
+    {"paper", post::Estimator::Paper}, {"sobol", post::Estimator::Sobol}, {"box", post::Estimator::Box}, {"lines", post::Estimator::Lines}};
+inline const Names<post::FilterGuide> kFilterGuideNames = {{"depth", post::FilterGuide::Depth},
+                                                           {"plane", post::FilterGuide::Plane}};
+
+// The first if the value has none.
+template <class T>
+const std::string& nameOf(const Names<T>& names, T value) {
+  for (const auto& [name, v] : names)
+    if (v == value) return name;
+  return names.front().first;
+}
+
+}  // namespace obscura::apps
