@@ -118,7 +118,6 @@ struct SixteenBlocks {
 
 // Block (column, row) of the box is the first of the sixteen; those outside of the box are not touched. step: a dx + b dy of
 // every pixel of a block, and four times that of the blocks of sixteen.
-template <bool kPartly>
 HWY_INLINE void findTouched(const Blocks& t, const VI step[3][kVectors], int column, int row, SixteenBlocks& out) {
   const DI di;
   constexpr int kLanes = int(hn::MaxLanes(DI()));
@@ -129,7 +128,7 @@ HWY_INLINE void findTouched(const Blocks& t, const VI step[3][kVectors], int col
     hn::Store(e, di, out.e[i] + k * kLanes);
     const int32_t across = (kBlock - 1) * t.a[i], down = (kBlock - 1) * t.b[i];
     outside = hn::Or(outside, hn::Add(e, hn::Set(di, (across > 0 ? across : 0) + (down > 0 ? down : 0))));
-    if (kPartly) partly = hn::Or(partly, hn::Add(e, hn::Set(di, (across < 0 ? across : 0) + (down < 0 ? down : 0))));
+    partly = hn::Or(partly, hn::Add(e, hn::Set(di, (across < 0 ? across : 0) + (down < 0 ? down : 0))));
   };
   for (int k = 0; k < kVectors; ++k) {
     VI outside = hn::Or(hn::Sub(hn::Set(di, t.columns - 1 - column), columnOf(k)), hn::Sub(hn::Set(di, t.rows - 1 - row), rowOf(k)));
@@ -138,9 +137,9 @@ HWY_INLINE void findTouched(const Blocks& t, const VI step[3][kVectors], int col
     edge(1, k, outside, partly);
     edge(2, k, outside, partly);
     out.touched |= bitsFrom(k * kLanes, hn::Not(hn::Lt(outside, hn::Zero(di))));
-    if (kPartly) out.partly |= bitsFrom(k * kLanes, hn::Lt(partly, hn::Zero(di)));
+    out.partly |= bitsFrom(k * kLanes, hn::Lt(partly, hn::Zero(di)));
   }
-  out.partly = kPartly ? out.partly & out.touched : out.touched;
+  out.partly &= out.touched;
 }
 
 // Vector k of block (column, row) of the box; x0, y0: the pixels' centres in the first block, minus p0.
@@ -154,22 +153,21 @@ HWY_INLINE void fillBlock(MaskedTriangle* masked, const Blocks& t, int column, i
   fillVector<kKeep>(masked, out.x + blockX * kBlock, out.y + blockY * kBlock, k, t.plane.id, keyAt(t.plane, x, y), outside, at, out);
 }
 
-// Sixteen blocks from block (column, row) of the box. kPartly: many may be covered whole, and no edge is asked for there.
-template <Keep kKeep, bool kPartly>
+// Sixteen blocks from block (column, row) of the box.
+template <Keep kKeep>
 HWY_INLINE void fillSixteen(MaskedTriangle* masked, const Blocks& t, const VI step[3][kVectors], int column, int row,
                             const TileBuffers& out) {
   const DF d;
   const DI di;
   SixteenBlocks some;
-  findTouched<kPartly>(t, step, column, row, some);
+  findTouched(t, step, column, row, some);
   for (int k = 0; k < kVectors; ++k) {
     const VF x0 = hn::Add(hn::ConvertTo(d, hn::ShiftLeft<kSubBits>(columnOf(k))), hn::Set(d, t.xFromP0));
     const VF y0 = hn::Add(hn::ConvertTo(d, hn::ShiftLeft<kSubBits>(rowOf(k))), hn::Set(d, t.yFromP0));
-    if (kPartly)
-      for (uint32_t rest = some.touched & ~some.partly; rest != 0; rest &= rest - 1) {
-        const int block = int(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
-        fillBlock<kKeep>(masked, t, column + (block & (kBlock - 1)), row + (block >> kBlockBits), k, x0, y0, hn::Zero(di), out);
-      }
+    for (uint32_t rest = some.touched & ~some.partly; rest != 0; rest &= rest - 1) {
+      const int block = int(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
+      fillBlock<kKeep>(masked, t, column + (block & (kBlock - 1)), row + (block >> kBlockBits), k, x0, y0, hn::Zero(di), out);
+    }
     for (uint32_t rest = some.partly; rest != 0; rest &= rest - 1) {
       const int block = int(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
       auto edge = [&](int i) HWY_ATTR { return hn::Add(step[i][k], hn::Set(di, some.e[i][block])); };
@@ -187,25 +185,68 @@ HWY_INLINE void fillBlocks(MaskedTriangle* masked, const Blocks& t, const TileBu
     return hn::Add(hn::Mul(columnOf(k), hn::Set(di, t.a[i])), hn::Mul(rowOf(k), hn::Set(di, t.b[i])));
   };
   for (int k = 0; k < kVectors; ++k) step[0][k] = stepOf(0, k), step[1][k] = stepOf(1, k), step[2][k] = stepOf(2, k);
-  if (t.columns <= kBlock && t.rows <= kBlock) return fillSixteen<kKeep, false>(masked, t, step, 0, 0, out);
   for (int row = 0; row < t.rows; row += kBlock)
-    for (int column = 0; column < t.columns; column += kBlock) fillSixteen<kKeep, true>(masked, t, step, column, row, out);
+    for (int column = 0; column < t.columns; column += kBlock) fillSixteen<kKeep>(masked, t, step, column, row, out);
 }
 
-// a dx + b dy of every pixel of vector k in block (column, row): the pair ab has a in its lower 16 bits and b in its upper
-// ones.
-HWY_INLINE VI stepOfPair(int32_t ab, int column, int row, int k) {
+// a dx + b dy, each of them a pair of 16 bits: a and dx lower, b and dy upper.
+HWY_INLINE VI stepOfPair(int32_t ab, VI distance) {
   const DI di;
-  const VI dx = hn::Add(columnOf(k), hn::Set(di, column * kBlock)), dy = hn::Add(rowOf(k), hn::Set(di, row * kBlock));
 #if HWY_TARGET == HWY_SCALAR
-  return hn::Add(hn::Mul(dx, hn::Set(di, lowerHalf(ab))), hn::Mul(dy, hn::Set(di, upperHalf(ab))));
+  const auto lower = [&](VI pair) HWY_ATTR { return hn::ShiftRight<16>(hn::ShiftLeft<16>(pair)); };
+  const VI pair = hn::Set(di, ab);
+  return hn::Add(hn::Mul(lower(distance), lower(pair)), hn::Mul(hn::ShiftRight<16>(distance), hn::ShiftRight<16>(pair)));
 #else
   const hn::Repartition<int16_t, DI> d16;
   VI none = hn::Zero(di);
-  const auto distance = hn::BitCast(d16, hn::Or(dx, hn::ShiftLeft<16>(dy)));
-  const VI sum = hn::ReorderWidenMulAccumulate(di, hn::BitCast(d16, hn::Set(di, ab)), distance, hn::Zero(di), none);
+  const VI sum = hn::ReorderWidenMulAccumulate(di, hn::BitCast(d16, hn::Set(di, ab)), hn::BitCast(d16, distance), hn::Zero(di), none);
   return hn::RearrangeToOddPlusEven(sum, none);
 #endif
+}
+
+// Up to four by four blocks from block (x, y) of the tile, where they lie in it; as fillBlocks(), but all from pairs.
+template <Keep kKeep>
+HWY_INLINE void fillSmall(const SmallTriangle& t, int x, int y, const TileBuffers& out) {
+  const DF d;
+  const DI di;
+  constexpr int kLanes = int(hn::MaxLanes(DI()));
+  // Of each block: pixels from the first block's.
+  HWY_ALIGN static constexpr float kXSub[kBlockPixels] = {0, 1024, 2048, 3072, 0, 1024, 2048, 3072, 0, 1024, 2048, 3072, 0, 1024, 2048, 3072};
+  HWY_ALIGN static constexpr float kYSub[kBlockPixels] = {0, 0, 0, 0, 1024, 1024, 1024, 1024, 2048, 2048, 2048, 2048, 3072, 3072, 3072, 3072};
+  static_assert(kBlock * kSub == 1024);
+  HWY_ALIGN int32_t edges[3][kBlockPixels];
+  const int rows = (out.height + kBlock - 1) >> kBlockBits;
+  const VI first[2] = {hn::Set(di, std::max(-x, 0)), hn::Set(di, std::max(-y, 0))};
+  const VI last[2] = {hn::Set(di, std::min(t.columns(), out.columns - x) - 1), hn::Set(di, std::min(t.rows(), rows - y) - 1)};
+  uint32_t touched = 0;
+  VI step[3][kVectors];
+  for (int k = 0; k < kVectors; ++k) {
+    const VI column = columnOf(k), row = rowOf(k);
+    VI outside = hn::Or(hn::Or(hn::Sub(column, first[0]), hn::Sub(last[0], column)), hn::Or(hn::Sub(row, first[1]), hn::Sub(last[1], row)));
+    const auto edge = [&](int i) HWY_ATTR {
+      const VI across = stepOfPair(t.ab[i], hn::Set(di, kBlock - 1)), down = stepOfPair(t.ab[i], hn::Set(di, (kBlock - 1) << 16));
+      step[i][k] = stepOfPair(t.ab[i], hn::Or(column, hn::ShiftLeft<16>(row)));
+      const VI e = hn::Add(hn::Set(di, t.e[i]), hn::ShiftLeft<kBlockBits>(step[i][k])), zero = hn::Zero(di);
+      hn::Store(e, di, edges[i] + k * kLanes);
+      outside = hn::Or(outside, hn::Add(e, hn::Add(hn::Max(across, zero), hn::Max(down, zero))));
+    };
+    edge(0);
+    edge(1);
+    edge(2);
+    touched |= bitsFrom(k * kLanes, hn::Not(hn::Lt(outside, hn::Zero(di))));
+  }
+  const Plane3 plane{t.key0, t.xGradient, t.yGradient, t.keyMin, t.keyMax, t.id};
+  for (int k = 0; k < kVectors; ++k) {
+    const VF x0 = hn::Add(hn::ConvertTo(d, hn::ShiftLeft<kSubBits>(columnOf(k))), hn::Set(d, t.xFromP0));
+    const VF y0 = hn::Add(hn::ConvertTo(d, hn::ShiftLeft<kSubBits>(rowOf(k))), hn::Set(d, t.yFromP0));
+    for (uint32_t rest = touched; rest != 0; rest &= rest - 1) {
+      const int block = int(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
+      auto edge = [&](int i) HWY_ATTR { return hn::Add(step[i][k], hn::Set(di, edges[i][block])); };
+      const VF key = keyAt(plane, hn::Add(x0, hn::Set(d, kXSub[block])), hn::Add(y0, hn::Set(d, kYSub[block])));
+      const int at = ((y + (block >> kBlockBits)) * out.columns + x + (block & (kBlock - 1))) * kBlockPixels + k * kLanes;
+      fillVector<kKeep>(nullptr, 0, 0, k, t.id, key, hn::Or(hn::Or(edge(0), edge(1)), edge(2)), size_t(at), out);
+    }
+  }
 }
 
 // So many blocks, all in the tile.
@@ -218,7 +259,9 @@ HWY_INLINE void fillFew(const SmallTriangle& t, const TileBuffers& out) {
   for (int row = 0; row < kRows; ++row)
     for (int column = 0; column < kColumns; ++column)
       for (int k = 0; k < kVectors; ++k) {
-        auto edge = [&](int i) HWY_ATTR { return hn::Add(stepOfPair(t.ab[i], column, row, k), hn::Set(di, t.e[i])); };
+        const VI dx = hn::Add(columnOf(k), hn::Set(di, column * kBlock)), dy = hn::Add(rowOf(k), hn::Set(di, row * kBlock));
+        const VI distance = hn::Or(dx, hn::ShiftLeft<16>(dy));
+        auto edge = [&](int i) HWY_ATTR { return hn::Add(stepOfPair(t.ab[i], distance), hn::Set(di, t.e[i])); };
         auto from = [&](VI pixel, int block, float fromP0) HWY_ATTR {
           return hn::Add(hn::ConvertTo(d, hn::ShiftLeft<kSubBits>(hn::Add(pixel, hn::Set(di, block * kBlock)))), hn::Set(d, fromP0));
         };
