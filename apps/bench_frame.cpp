@@ -44,9 +44,7 @@ void FrameBenchmark::addTo(CLI::App& app, int& status) {
 }
 
 int FrameBenchmark::run() {
-  engine::LoadOptions load;
-  load.scene = options.scene;
-  const auto loaded = engine::sceneFromGltf(scene, load);
+  const auto loaded = engine::sceneFromGltf(scene, options.load());
   if (!loaded) return fail(loaded.error());
   auto resolved = options.resolve(*loaded);
   if (!resolved) return fail(resolved.error());

@@ -55,7 +55,7 @@ void runEmbree(const RayScene& rays, const engine::FrameSettings& settings, cons
   bench.sums = post::makeTransferSums(in, std::move(bench.sums));
   traceObscurance(rays, in, parallel, bench.sums);
   f.timings.transfer = watch.lap();
-  f.transfer = post::makeTransfer(f.width, f.height, true, false, std::move(f.transfer));
+  f.transfer = post::makeTransfer(f.width, f.height, {true}, std::move(f.transfer));
   parallel.forRanges(size_t(f.height), 8, [&](size_t y0, size_t y1, int) {
     post::depthFilter(in, bench.sums, int(y0), int(y1), f.transfer, target);
   });

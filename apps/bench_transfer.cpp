@@ -16,10 +16,8 @@ namespace {
 
 constexpr int kBoxes = 2, kWarmUp = 2;
 
-engine::Result<engine::Scene> sceneOf(const std::string& file, int index) {
+engine::Result<engine::Scene> sceneOf(const std::string& file, const engine::LoadOptions& load) {
   if (file.empty()) return makeGround(kBoxes);
-  engine::LoadOptions load;
-  load.scene = index;
   return engine::sceneFromGltf(file, load);
 }
 
@@ -53,7 +51,7 @@ void TransferBenchmark::addTo(CLI::App& app, int& status) {
 }
 
 int TransferBenchmark::run() {
-  const auto loaded = sceneOf(scene, options.scene);
+  const auto loaded = sceneOf(scene, options.load());
   if (!loaded) return fail(loaded.error());
   auto resolved = options.resolve(*loaded);
   if (!resolved) return fail(resolved.error());

@@ -58,6 +58,29 @@ std::optional<glm::vec3> colorOf(const std::string& text) {
   return glm::vec3(*v);
 }
 
+// Six colours with slashes between.
+std::optional<std::array<glm::vec3, 6>> sixColorsOf(std::string_view text) {
+  std::array<glm::vec3, 6> colors;
+  for (size_t k = 0; k < 6; ++k) {
+    const size_t end = k < 5 ? text.find('/') : text.size();
+    if (end == text.npos) return std::nullopt;
+    const std::optional<glm::vec3> color = colorOf(std::string(text.substr(0, end)));
+    if (!color) return std::nullopt;
+    colors[k] = *color;
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return colors;
+}
+
+// "NAME=COLOR"; names may hold further =.
+bool addNodeColor(const std::string& text, std::vector<std::pair<std::string, glm::vec3>>& out) {
+  const size_t equals = text.rfind('=');
+  if (equals == text.npos || equals == 0) return false;
+  const std::optional<glm::vec3> color = colorOf(text.substr(equals + 1));
+  if (color) out.emplace_back(text.substr(0, equals), *color);
+  return bool(color);
+}
+
 bool readSize(const std::string& text, int& width, int& height) {
   const size_t x = text.find_first_of("xX");
   if (x == text.npos) return false;
@@ -196,6 +219,26 @@ void addTarget(CLI::App& app, FrameOptions& o) {
       ->group("View");
 }
 
+void addAmbientVariants(CLI::App& app, FrameOptions& o) {
+  const auto addNodes = [&o](const std::vector<std::string>& texts) {
+    for (const std::string& text : texts)
+      if (!addNodeColor(text, o.ambientNodes))
+        throw CLI::ValidationError("--ambient-node", "\"" + text + "\" is not NAME=COLOR");
+  };
+  app.add_option_function<std::vector<std::string>>(
+         "--ambient-node", addNodes,
+         "ambient light of the node of this name and all below it, where rooms differ; repeatable; COLOR as above [as the "
+         "file's nodes say, else --ambient-light]")
+      ->type_name("NAME=COLOR")
+      ->allow_extra_args(false)
+      ->group("View");
+  addRead(app, "--ambient-directional", "PX/NX/PY/NY/PZ/NZ",
+          "factors on the ambient light by the direction of a surface: six colours, of surfaces that face +x, -x, +y, -y, +z "
+          "and -z of the world; others get a mean [none]",
+          [&o](const std::string& text) { return bool(o.ambientDirections = sixColorsOf(text)); })
+      ->group("View");
+}
+
 void addView(CLI::App& app, FrameOptions& o) {
   const std::string size = std::to_string(o.width) + "x" + std::to_string(o.height);
   addRead(app, "--size", "WxH",
@@ -240,6 +283,7 @@ void addView(CLI::App& app, FrameOptions& o) {
   addLength(app, "--separation", false, o.separation, "how far behind what is seen the AOV depth2 begins",
             shown(engine::kDefaultSeparation) + " x R")->group("View");
   addColor(app, "--ambient-light", o.ambientLight, "the light that comes from everywhere");
+  addAmbientVariants(app, o);
 }
 
 void addAmbient(CLI::App& app, FrameOptions& o) {
@@ -252,8 +296,11 @@ void addAmbient(CLI::App& app, FrameOptions& o) {
             {{"off", Occlusion::None}, {"obscurance", Occlusion::Obscurance}, {"transfer", Occlusion::Transfer}},
             o.ambient, "what dims the ambient light: nothing, O or W")
       ->group(group);
-  addChoice(app, "--albedo", {{"own", TransferAlbedo::Own}, {"neighbour", TransferAlbedo::Neighbour}},
-            o.transfer.albedo, "W from the pixel's own albedo, or from that of what occludes it")
+  addChoice(app, "--albedo", {{"own", TransferAlbedo::Own}, {"neighbour", TransferAlbedo::Neighbour},
+                              {"radiance", TransferAlbedo::Radiance}},
+            o.transfer.albedo,
+            "what W takes from what occludes: the pixel's own albedo, that of the occluder, or the radiance that the frame "
+            "holds there (emission and ambient light, reflected once)")
       ->group(group);
   addInteger(app, "--samples", 1, 64, o.transfer.samples,
              "n, rays per pixel [" + std::to_string(o.transfer.samples) + "]")
@@ -316,6 +363,13 @@ void FrameOptions::addTo(CLI::App& app) {
   addExecution(app, *this);
 }
 
+engine::LoadOptions FrameOptions::load() const {
+  engine::LoadOptions options;
+  options.scene = scene;
+  options.ambient = ambientNodes;
+  return options;
+}
+
 engine::Result<ResolvedFrame> FrameOptions::resolve(const engine::Scene& in) const {
   ResolvedFrame out;
   engine::Result<raster::Camera> chosen = engine::chooseCamera(in, camera, width, height);
@@ -329,6 +383,7 @@ engine::Result<ResolvedFrame> FrameOptions::resolve(const engine::Scene& in) con
   out.frame.camera = *chosen;
   out.frame.ambient = ambient;
   out.frame.ambientLight = ambientLight;
+  out.frame.ambientDirections = ambientDirections;
   out.frame.background = background;
   out.frame.transfer = transfer;
   out.frame.transfer.radius = float(r);

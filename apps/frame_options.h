@@ -1,13 +1,17 @@
 // In: the command line's options that describe a frame.  Out: what engine::Renderer takes.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "obscura/engine/camera_choice.h"
 #include "obscura/engine/frame.h"
+#include "obscura/engine/gltf.h"
 #include "obscura/engine/result.h"
 #include "obscura/engine/scene.h"
 #include "obscura/raster/rasterizer.h"
@@ -31,6 +35,8 @@ struct FrameOptions {
   int scene = -1;  // of the file; -1: its default
   engine::CameraRequest camera;
   glm::vec3 background{0}, ambientLight{1};  // linear
+  std::optional<std::array<glm::vec3, 6>> ambientDirections;   // as in engine::FrameSettings
+  std::vector<std::pair<std::string, glm::vec3>> ambientNodes;  // as in engine::LoadOptions
   post::Occlusion ambient = post::Occlusion::Transfer;
   post::AmbientSettings transfer;                          // but for three of the lengths below
   std::optional<double> radius, bias, filterThreshold;     // scene units; empty: a fraction of the scene's size
@@ -40,6 +46,9 @@ struct FrameOptions {
 
   // Values that cannot be are refused while parsing, with a CLI::ValidationError.
   void addTo(CLI::App& app);
+
+  // What the scene must be loaded with.
+  engine::LoadOptions load() const;
 
   // Usage: no such camera, or lengths that are no number in this scene.
   engine::Result<ResolvedFrame> resolve(const engine::Scene& scene) const;

@@ -180,8 +180,7 @@ Result<std::vector<Output>> RenderCommand::plan() {
 }
 
 Result<engine::Scene> RenderCommand::load(bool textures) const {
-  engine::LoadOptions options;
-  options.scene = options_.scene;
+  engine::LoadOptions options = options_.load();
   options.textures = textures;
   return engine::sceneFromGltf(scene_, options);
 }

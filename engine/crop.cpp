@@ -82,7 +82,7 @@ float nearestDepth(const raster::Plane<float>& depth) {
 
 void cutOut(const post::Transfer& from, const Window& part, post::Transfer& to) {
   raster::cutOut(from.obscurance, part, to.obscurance);
-  for (int c = 0; c < 3; ++c) raster::cutOut(from.w[c], part, to.w[c]);
+  for (int c = 0; c < 3; ++c) raster::cutOut(from.w[c], part, to.w[c]), raster::cutOut(from.bounced[c], part, to.bounced[c]);
 }
 
 }  // namespace obscura::engine

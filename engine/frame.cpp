@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "obscura/engine/ambient_light.h"
 #include "obscura/engine/crop.h"
 #include "obscura/engine/downsample_frame.h"
 #include "obscura/post/transfer_samples.h"
@@ -19,7 +20,10 @@ namespace {
 // What the wanted AOVs add up to.
 struct Needs {
   raster::PlaneSet planes;
-  bool color = false, sums = false, obscurance = false, w = false;
+  bool color = false, sums = false;
+  post::TransferPlanes transfer;
+  bool albedo = false;    // of what occludes, or of the pixel itself
+  bool radiance = false;  // of what occludes
 };
 
 bool emits(const Scene& scene) {
@@ -34,16 +38,22 @@ Needs needsOf(const Scene& scene, const FrameSettings& s) {
   const auto wants = [&](Aov aov) { return engine::wants(s, aov); };
   Needs n;
   n.color = wants(Aov::Color) || s.display;
-  n.obscurance = wants(Aov::Obscurance) || (n.color && s.ambient == post::Occlusion::Obscurance);
-  n.w = wants(Aov::Transfer) || (n.color && s.ambient == post::Occlusion::Transfer);
-  n.sums = n.obscurance || n.w;
+  const bool toLight = n.color && s.ambient == post::Occlusion::Transfer, w = wants(Aov::Transfer) || toLight;
+  n.radiance = w && s.transfer.albedo == post::TransferAlbedo::Radiance;
+  n.albedo = w && !n.radiance;
+  n.transfer.bounced = n.radiance;
+  n.transfer.w = n.radiance ? wants(Aov::Transfer) : w;
+  n.transfer.obscurance =
+      wants(Aov::Obscurance) || n.radiance || (n.color && s.ambient == post::Occlusion::Obscurance);
+  n.sums = w || n.transfer.obscurance;
+  const bool lights = n.color || n.radiance;
   n.planes.depth = wants(Aov::Depth) || n.sums || n.color || s.supersample > 1;  // the nearest sub-pixel
-  n.planes.normal = wants(Aov::Normal) || n.sums;
-  n.planes.albedo = wants(Aov::Albedo) || n.w || n.color;
-  n.planes.emissive = wants(Aov::Emissive) || (n.color && emits(scene));
+  n.planes.normal = wants(Aov::Normal) || n.sums || (lights && s.ambientDirections);
+  n.planes.albedo = wants(Aov::Albedo) || n.albedo || lights;
+  n.planes.emissive = wants(Aov::Emissive) || (lights && emits(scene));
   n.planes.position = wants(Aov::Position);
   n.planes.triangle = wants(Aov::Triangle);
-  n.planes.instance = wants(Aov::Instance);
+  n.planes.instance = wants(Aov::Instance) || (lights && hasAmbientGroups(scene));
   n.planes.material = wants(Aov::Material);
   n.planes.depth2 = wants(Aov::Depth2);
   n.planes.depthBack = wants(Aov::DepthBack);
@@ -65,10 +75,12 @@ const char* wrongSetting(const FrameSettings& s) {
   if (t.estimator == post::Estimator::Lines && t.membership != post::Membership::Linear)
     return "line samples have the linear membership: choose that, or another estimator";
   if (!(t.filterThreshold > 0)) return "the filter threshold must be positive";
-  for (int c = 0; c < 3; ++c)
-    if (!(s.ambientLight[c] >= 0 && s.ambientLight[c] < 1e30f) || !(s.background[c] >= 0 && s.background[c] < 1e30f))
-      return "colours must be 0 or more and finite";
-  return nullptr;
+  const auto isColor = [](const glm::vec3& v) {
+    return v.x >= 0 && v.y >= 0 && v.z >= 0 && std::max({v.x, v.y, v.z}) < 1e30f;
+  };
+  bool colors = isColor(s.ambientLight) && isColor(s.background);
+  for (int k = 0; s.ambientDirections && k < 6; ++k) colors &= isColor((*s.ambientDirections)[size_t(k)]);
+  return colors ? nullptr : "colours must be 0 or more and finite";
 }
 
 }  // namespace
@@ -83,6 +95,9 @@ struct Renderer::State {
   std::vector<raster::MeshView> meshes;
   std::vector<raster::Instance> instances;
   std::vector<raster::TextureView> textures;
+  std::vector<glm::vec3> ambientOfInstances;
+  post::AmbientLight ambient;
+  post::LinearColor radiance;  // of what is drawn, for the transfer that reads it
   post::DepthBounds bounds;
   post::TransferSums sums;
   // Of a frame with border or crop more is drawn than is given: this window, and in it the part that is given.
@@ -108,7 +123,7 @@ struct Renderer::State {
 
   void drawGBuffer(const Scene& scene, const FrameSettings& s, const Needs& needs, Frame& out);
   void drawTransfer(const FrameSettings& s, const Needs& needs, Frame& out);
-  void drawLight(const FrameSettings& s, Frame& out);
+  void drawLight(const FrameSettings& s, const Needs& needs, Frame& out);
   void drawDisplay(Frame& out);
 
   // Calls body(y0, y1) for bands of the rows first ... end - 1, in parallel.
@@ -197,14 +212,22 @@ void Renderer::State::drawTransfer(const FrameSettings& s, const Needs& needs, F
   raster::GBuffer& g = more() ? drawn : out.g;
   if (needs.sums) {
     post::TransferInput in{&g, post::makeProjector(s.camera, s.width, s.height, window), s.transfer, post::transferSamples(s.transfer)};
-    if (!needs.w) in.settings.albedo = post::TransferAlbedo::Own;  // O needs no neighbour's albedo, and there is none
+    if (!needs.albedo && !needs.radiance) in.settings.albedo = post::TransferAlbedo::Own;  // for O, which reads none
+    if (needs.radiance) {
+      radiance = post::makeLinearColor(g.width, g.height, std::move(radiance));
+      const post::LightInput first{&g, nullptr, post::Occlusion::None, ambient, glm::vec3(0)};
+      forRows(0, g.height, [&](int y0, int y1) {
+        reference ? post::lightRef(first, y0, y1, radiance) : post::light(first, y0, y1, radiance, target);
+      });
+      in.radiance = &radiance;
+    }
     const raster::Window filtered = filteredWindow(s);
     out.transferStatistics = transferSums(in, filtered.y - window.y, filtered.y + filtered.height - window.y);
     out.timings.transfer = watch.lap();
 
     post::Transfer& transfer = more() ? drawnTransfer : out.transfer;
     for (int c = 0; overNormals && c < 3; ++c) transfer.w[c] = std::exchange(g.normal[c], {});
-    transfer = post::makeTransfer(g.width, g.height, needs.obscurance, needs.w, std::move(transfer));
+    transfer = post::makeTransfer(g.width, g.height, needs.transfer, std::move(transfer));
     forRows(part.y, part.y + part.height, [&](int y0, int y1) {
       reference ? post::depthFilterRef(in, sums, y0, y1, transfer) : post::depthFilter(in, sums, y0, y1, transfer, target);
     });
@@ -214,13 +237,20 @@ void Renderer::State::drawTransfer(const FrameSettings& s, const Needs& needs, F
   out.timings.filter = watch.lap();
 }
 
-void Renderer::State::drawLight(const FrameSettings& s, Frame& out) {
-  for (int c = 0; overSums && c < 3; ++c) out.color.rgb[c] = std::exchange(sums.denominator[c], {});
-  out.color = post::makeLinearColor(out.width, out.height, std::move(out.color));
-  const post::LightInput in{&out.g, &out.transfer, s.ambient, s.ambientLight, s.background};
-  forRows(0, out.height, [&](int y0, int y1) {
-    reference ? post::lightRef(in, y0, y1, out.color) : post::light(in, y0, y1, out.color, target);
-  });
+void Renderer::State::drawLight(const FrameSettings& s, const Needs& needs, Frame& out) {
+  const post::LightInput in{&out.g, &out.transfer, s.ambient, ambient, s.background};
+  if (needs.color) {
+    for (int c = 0; overSums && c < 3; ++c) out.color.rgb[c] = std::exchange(sums.denominator[c], {});
+    out.color = post::makeLinearColor(out.width, out.height, std::move(out.color));
+    forRows(0, out.height, [&](int y0, int y1) {
+      reference ? post::lightRef(in, y0, y1, out.color) : post::light(in, y0, y1, out.color, target);
+    });
+  }
+  if (needs.radiance && needs.transfer.w)
+    forRows(0, out.height, [&](int y0, int y1) {
+      reference ? post::transferOfBouncedRef(in, y0, y1, out.transfer.w)
+                : post::transferOfBounced(in, y0, y1, out.transfer.w, target);
+    });
 }
 
 void Renderer::State::drawDisplay(Frame& out) {
@@ -253,9 +283,11 @@ Result<Done> Renderer::render(const Scene& scene, const FrameSettings& settings,
   raster::Stopwatch total, watch;
 
   const bool normalIsAov = std::find(settings.aovs.begin(), settings.aovs.end(), Aov::Normal) != settings.aovs.end();
-  const bool normalIsRead = settings.transfer.filter && settings.transfer.filterGuide == post::FilterGuide::Plane;
-  s.overNormals = supersampled && needs.w && !normalIsAov && !normalIsRead;
+  const bool normalIsRead = (settings.transfer.filter && settings.transfer.filterGuide == post::FilterGuide::Plane) ||
+                            settings.ambientDirections;
+  s.overNormals = supersampled && needs.transfer.w && !normalIsAov && !normalIsRead;
   s.overSums = supersampled;
+  if (needs.color || needs.radiance) s.ambient = ambientLightOf(scene, settings, s.ambientOfInstances);
   drawn.timings = {};
   drawn.transferStatistics = {};
   s.drawGBuffer(scene, full, needs, drawn);
@@ -264,8 +296,8 @@ Result<Done> Renderer::render(const Scene& scene, const FrameSettings& settings,
   timings.transfer = drawn.timings.transfer;
   timings.filter = drawn.timings.filter;
   watch.lap();
-  if (needs.color) {
-    s.drawLight(full, drawn);
+  if (needs.color || needs.radiance) {
+    s.drawLight(full, needs, drawn);
     timings.light = watch.lap();
   }
   if (supersampled) {

@@ -2,6 +2,7 @@
 // Out: the frame: every plane that these need, and nothing else.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -30,7 +31,10 @@ struct FrameSettings {
   std::optional<raster::Window> crop;
   post::Occlusion ambient = post::Occlusion::Transfer;
   post::AmbientSettings transfer;
-  glm::vec3 ambientLight{1};      // La, linear
+  // La, linear: of what belongs to no node group of its own (Instance::ambient), and a factor by the direction of the
+  // normal: colours from +x, -x, +y, -y, +z and -z of the world, see post::AmbientLight.
+  glm::vec3 ambientLight{1};
+  std::optional<std::array<glm::vec3, 6>> ambientDirections;
   glm::vec3 background{0};        // linear
   std::vector<Aov> aovs = {Aov::Color};
   bool display = false;           // also the picture as sRGB bytes
@@ -43,6 +47,7 @@ struct FrameTimings {  // milliseconds; 0 for what was not needed
 
 // Planes that no AOV needed are empty. With supersampling only planes that are AOVs themselves are there; how they come
 // from the sub-pixels: downsample_frame.h. The statistics are those of the sub-pixels' image.
+// With TransferAlbedo::Radiance the radiance is the emission and the ambient light La that the albedo reflects.
 struct Frame {
   int width = 0, height = 0;            // of the planes: the crop's, or the image's
   int x = 0, y = 0;                     // where their pixel (0, 0) lies in the image

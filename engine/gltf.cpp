@@ -101,7 +101,7 @@ class Assembly {
     for (const Placement& p : placements) {
       for (uint32_t mesh : meshOfPrimitive_[p.mesh]) {
         if (mesh == kNoMesh) continue;
-        scene_.instances.push_back({mesh, p.node, p.worldFromObject});
+        scene_.instances.push_back({mesh, p.node, p.worldFromObject, p.ambient});
         extendBounds(boxes_[mesh], p.worldFromObject);
       }
     }

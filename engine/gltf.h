@@ -3,6 +3,10 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
+#include <vector>
+
+#include <glm/vec3.hpp>
 
 #include "obscura/engine/result.h"
 #include "obscura/engine/scene.h"
@@ -25,11 +29,15 @@ struct LoadLimits {
 struct LoadOptions {
   int scene = -1;               // -1: the file's default scene, else its first
   bool textures = true;         // false: only those that decide what is seen (of masks), else factors only
+  // Ambient light of the nodes of this name and of all below them, linear, >= 0 and finite, instead of what the file says;
+  // the first of equal names counts.
+  std::vector<std::pair<std::string, glm::vec3>> ambient;
   LoadLimits limits;
 };
 
 // Reads what the chosen scene draws and nothing else: meshes, materials and images that no node of it shows are not
-// decoded. Errors: Usage (options.scene does not exist), else BadInput with the file and the JSON pointer concerned;
+// decoded. A node's extras {"obscura_ambient": [r, g, b]} are the ambient light of what it and all below it show, the
+// nearest counts. Errors: Usage (options.scene or a node of options.ambient does not exist), else BadInput with the file and the JSON pointer concerned;
 // no exception escapes. What is left out (Scene::warnings says so, once a kind):
 //   - an extension that is not supported and not required; required ones are errors. KHR_lights_punctual is the
 //     exception: pictures are lit by the ambient light, so required or not it is left out;

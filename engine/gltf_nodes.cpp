@@ -98,12 +98,15 @@ class Walk {
 
   // A stack of our own: the depth of a hostile tree is not the depth of ours.
   NodeTree from(const std::vector<int>& roots, const std::string& path) {
-    push(roots, path + "/nodes", dmat4(1.0), 1);
+    push(roots, path + "/nodes", dmat4(1.0), std::nullopt, 1);
     while (!stack_.empty()) {
       const Pending next = stack_.back();
       stack_.pop_back();
       visit(next);
     }
+    for (const auto& [name, color] : document_.options.ambient)
+      if (named_.count(name) == 0)
+        throw Failure{{ErrorCode::Usage, "no node of the scene is named \"" + name + "\" to be given an ambient light", "", ""}};
     return std::move(tree_);
   }
 
@@ -112,9 +115,11 @@ class Walk {
     int node;
     uint32_t depth;
     dmat4 worldFromParent;
+    std::optional<glm::vec3> ambient;  // of the parent
   };
 
-  void push(const std::vector<int>& children, const std::string& path, const dmat4& worldFromParent, uint32_t depth) {
+  void push(const std::vector<int>& children, const std::string& path, const dmat4& worldFromParent,
+            const std::optional<glm::vec3>& ambient, uint32_t depth) {
     for (size_t i = children.size(); i-- > 0;) {
       at(nodes_, children[i], "node", pointer(path, i));
       const std::string node = pointer("/nodes", uint64_t(children[i]));
@@ -123,7 +128,7 @@ class Walk {
       if (depth > document_.options.limits.nodeDepth) {
         fail(node, "deeper than the limit of " + std::to_string(document_.options.limits.nodeDepth) + " levels");
       }
-      stack_.push_back({children[i], depth, worldFromParent});
+      stack_.push_back({children[i], depth, worldFromParent, ambient});
     }
   }
 
@@ -131,25 +136,46 @@ class Walk {
     const tinygltf::Node& node = nodes_[size_t(p.node)];
     const std::string path = pointer("/nodes", uint64_t(p.node));
     const dmat4 worldFromNode = p.worldFromParent * localTransform(node, path);
-    if (node.mesh >= 0) placeMesh(node, uint32_t(p.node), path, worldFromNode);
+    std::optional<glm::vec3> ambient = ownAmbient(node, path);
+    if (!ambient) ambient = p.ambient;
+    if (node.mesh >= 0) placeMesh(node, uint32_t(p.node), path, worldFromNode, ambient);
     if (node.camera >= 0) placeCamera(node, path, worldFromNode);
-    push(node.children, path + "/children", worldFromNode, p.depth + 1);
+    push(node.children, path + "/children", worldFromNode, ambient, p.depth + 1);
   }
 
-  void placeMesh(const tinygltf::Node& node, uint32_t index, const std::string& path, const dmat4& worldFromNode) {
+  // The load options go before the file.
+  std::optional<glm::vec3> ownAmbient(const tinygltf::Node& node, const std::string& path) {
+    for (const auto& [name, color] : document_.options.ambient) {
+      if (name != node.name) continue;
+      named_.insert(name);
+      return color;
+    }
+    if (!node.extras.Has("obscura_ambient")) return std::nullopt;
+    const tinygltf::Value& numbers = node.extras.Get("obscura_ambient");
+    glm::vec3 color;
+    for (int c = 0; c < 3; ++c) {
+      const double v = numbers.Get(c).GetNumberAsDouble();
+      check(v >= 0 && v < 1e30, path + "/extras/obscura_ambient", "a colour that is below 0 or not finite");
+      color[c] = float(v);
+    }
+    return color;
+  }
+
+  void placeMesh(const tinygltf::Node& node, uint32_t index, const std::string& path, const dmat4& worldFromNode,
+                 const std::optional<glm::vec3>& ambient) {
     const tinygltf::Mesh& mesh = at(document_.model.meshes, node.mesh, "mesh", path + "/mesh");
     if (node.skin >= 0) document_.warnings.add("skins are ignored: meshes are drawn at rest, by their node");
     const auto instancing = node.extensions.find("EXT_mesh_gpu_instancing");
     if (instancing == node.extensions.end()) {
       reserve(1, mesh, path);
-      tree_.placements.push_back({index, uint32_t(node.mesh), worldFromNode});
+      tree_.placements.push_back({index, uint32_t(node.mesh), worldFromNode, ambient});
       return;
     }
-    placeInstances(instancing->second.Get("attributes"), index, mesh, path, worldFromNode);
+    placeInstances(instancing->second.Get("attributes"), index, mesh, path, worldFromNode, ambient);
   }
 
   void placeInstances(const tinygltf::Value& attributes, uint32_t index, const tinygltf::Mesh& mesh,
-                      const std::string& nodePath, const dmat4& worldFromNode) {
+                      const std::string& nodePath, const dmat4& worldFromNode, const std::optional<glm::vec3>& ambient) {
     const std::string path = nodePath + "/extensions/EXT_mesh_gpu_instancing/attributes";
     constexpr struct {
       const char* name;
@@ -183,7 +209,7 @@ class Walk {
     for (size_t i = 0; i < *count; ++i) {
       const float *t = &parts[0][i * 3], *q = &parts[1][i * 4], *s = &parts[2][i * 3];
       const dmat4 nodeFromInstance = transform({t[0], t[1], t[2]}, {q[0], q[1], q[2], q[3]}, {s[0], s[1], s[2]});
-      tree_.placements.push_back({index, uint32_t(nodes_[index].mesh), worldFromNode * nodeFromInstance});
+      tree_.placements.push_back({index, uint32_t(nodes_[index].mesh), worldFromNode * nodeFromInstance, ambient});
     }
   }
 
@@ -209,6 +235,7 @@ class Walk {
   Document& document_;
   const std::vector<tinygltf::Node>& nodes_;
   std::vector<bool> seen_;
+  std::set<std::string> named_;  // of the load options' names, those that were found
   std::vector<Pending> stack_;
   NodeTree tree_;
   uint64_t instances_ = 0;

@@ -2,6 +2,8 @@
 // Private to engine/gltf*.cpp.
 #pragma once
 
+#include <optional>
+
 #include "obscura/engine/gltf_document.h"
 
 namespace obscura::engine::gltf {
@@ -9,6 +11,7 @@ namespace obscura::engine::gltf {
 struct Placement {
   uint32_t node, mesh;  // of the file; the mesh exists
   glm::dmat4 worldFromObject;
+  std::optional<glm::vec3> ambient;  // of the node's own or its nearest ancestor's
 };
 
 struct NodeTree {
@@ -17,7 +20,7 @@ struct NodeTree {
 };
 
 // Matrices are accumulated in double. Errors: a node that is reached twice (a cycle, or two parents) or too deep,
-// more instances than the limit.
+// more instances than the limit; an ambient light that is no colour, or one for a node that the scene does not have.
 NodeTree placeNodes(Document& document);
 
 }  // namespace obscura::engine::gltf

@@ -21,6 +21,7 @@ enum class Kind {
   Objects,     // an array of them
   Extensions,  // an object of objects; those that `child` does not name are ignored
   Targets,     // morph targets: only their number is kept
+  Extras,      // as `child` says if it is an object; anything else is ignored, as it can be of anybody
 };
 
 struct Field;
@@ -52,6 +53,7 @@ constexpr Field required(const char* name, Kind kind) { return {name, kind, kReq
 constexpr Field numbers(const char* name, size_t count) { return {name, Kind::Numbers, kOptional, count, {}}; }
 constexpr Field object(const char* name, Schema child) { return {name, Kind::Object, kOptional, 0, child}; }
 constexpr Field objects(const char* name, Schema child) { return {name, Kind::Objects, kOptional, 0, child}; }
+constexpr Field extras(Schema child) { return {"extras", Kind::Extras, kOptional, 0, child}; }
 constexpr Field extensions(Schema child) { return {"extensions", Kind::Extensions, kOptional, 0, child}; }
 
 // glTF 2.0, appendix A, and the schemas of the extensions: what of it the loader uses.
@@ -93,10 +95,12 @@ constexpr Field kMesh[] = {optional("name", Kind::String),
                            extensions({})};
 constexpr Field kInstancing[] = {required("attributes", Kind::IndexMap)};
 constexpr Field kNodeExtensions[] = {object("EXT_mesh_gpu_instancing", kInstancing)};
+constexpr Field kNodeExtras[] = {numbers("obscura_ambient", 3)};
 constexpr Field kNode[] = {
     optional("name", Kind::String), optional("mesh", Kind::Index), optional("camera", Kind::Index),
     optional("skin", Kind::Index), optional("children", Kind::Indices), numbers("matrix", 16),
-    numbers("translation", 3), numbers("rotation", 4), numbers("scale", 3), extensions(kNodeExtensions)};
+    numbers("translation", 3), numbers("rotation", 4), numbers("scale", 3), extensions(kNodeExtensions),
+    extras(kNodeExtras)};
 constexpr Field kScene[] = {optional("name", Kind::String), optional("nodes", Kind::Indices), extensions({})};
 constexpr Field kPerspective[] = {required("yfov", Kind::Number), required("znear", Kind::Number),
                                   optional("zfar", Kind::Number), optional("aspectRatio", Kind::Number)};
@@ -185,6 +189,10 @@ class Checker {
           if (!known) ignored_.insert(it.key());
         }
         return checkObject(j, f.child, path);
+      case Kind::Extras:
+        if (j.is_object()) checkObject(j, f.child, path);
+        else j = Json::object();
+        return;
       case Kind::Targets:
         return each(j, path, [&](Json& e, const Path&) { e = Json::object(); });
     }

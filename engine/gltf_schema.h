@@ -17,8 +17,8 @@ struct CheckedJson {
 };
 
 // After it:
-//   - every member is one the loader knows; extras, animations, skins and extensions that are not supported are gone,
-//     and morph targets are only an array of as many empty objects;
+//   - every member is one the loader knows; animations, skins, extras and extensions that are not ours or supported are
+//     gone, and morph targets are only an array of as many empty objects;
 //   - every member has the type glTF gives it, required ones exist, number arrays have their length;
 //   - indices and enumerations are in 0 ... 2^31 - 1, sizes in 0 ... 2^53.
 // Whether an index names something is for whoever follows it.

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,7 @@ struct Instance {
   uint32_t mesh = 0;
   uint32_t node = 0;  // index of the glTF node it comes from
   glm::dmat4 worldFromObject{1.0};
+  std::optional<glm::vec3> ambient{};  // La of its node group, linear; else that of the frame
 };
 
 // A decoded image with the sampler it is used with; `view` points into `texels`, which textures of the same image

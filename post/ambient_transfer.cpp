@@ -54,11 +54,12 @@ HWY_INLINE void turnFrame(Pixels& at, VF c, VF s) {
 constexpr int kSegment = 16;
 static_assert(DepthBounds::kCellWidth == kSegment, "a segment lies in one block");
 
-template <class Points, bool kPerspective, bool kOneStep, bool kNeighbour>
+// kReads: what the occluders send back is subtracted from the denominators.
+template <class Points, bool kPerspective, bool kOneStep, bool kReads>
 class Kernel {
  public:
   Kernel(const TransferInput& in, TransferSums& out)
-      : in_(in), g_(*in.g), out_(out), map_(in), points_(in, in.settings.steps), reach_(points_.all()) {}
+      : in_(in), g_(*in.g), read_(occluderPlanes(in)), out_(out), map_(in), points_(in, in.settings.steps), reach_(points_.all()) {}
 
   TransferStatistics rows(int y0, int y1) {
     if (in_.bounds) blocks_.resize(size_t(in_.bounds->c.width()));
@@ -90,6 +91,7 @@ class Kernel {
     const DF d;
     constexpr int kLanes = int(hn::MaxLanes(DF())), kVectors = kSegment / kLanes;
     const VF all = hn::Set(d, float(in_.settings.samples));
+    const VF start = in_.settings.albedo == TransferAlbedo::Radiance ? hn::Zero(d) : all;
     const VF infinity = hn::Set(d, std::numeric_limits<float>::infinity());
     float* numerator = out_.numerator.row(y) + x;
     MF seen[kVectors];
@@ -100,7 +102,7 @@ class Kernel {
                         hn::RebindMask(d, hn::Lt(column, hn::Set(DI(), g_.width))));
       seenCount += hn::CountTrue(d, seen[v]);
       hn::StoreU(all, d, numerator + v * kLanes);
-      for (int c = 0; kNeighbour && c < 3; ++c) hn::StoreU(all, d, out_.denominator[c].row(y) + x + v * kLanes);
+      for (int c = 0; kReads && c < 3; ++c) hn::StoreU(start, d, out_.denominator[c].row(y) + x + v * kLanes);
     }
     statistics_.empty += uint64_t(std::min(kSegment, g_.width - x)) - seenCount;
     uint8_t& open = out_.open.at(x / kSegment, y);
@@ -113,15 +115,12 @@ class Kernel {
       // A ray from infinity meets nothing: z - z* is not finite.
       const VF z = hn::IfThenElse(seen[v], hn::LoadU(d, g_.depth.row(y) + x + v * kLanes), infinity);
       place(pixels[v], x + v * kLanes, y, z);
-      setFrame(pixels[v]);
     }
     if (in_.bounds) {
       const OpenBlock& block = blocks_[size_t(x / kSegment)];
       bool known = block.known;
       for (int v = 0; v < kVectors && known; ++v) {
-        const Pixels& at = pixels[v];
-        const MF outer =
-            knownOpen<kPerspective>(block, reach_, at.position, at.t, at.b, at.n, in_.settings.bias);
+        const MF outer = knownOpen<kPerspective>(block, reach_, pixels[v].position, pixels[v].n, in_.settings.bias);
         known = hn::AllTrue(d, hn::Or(hn::Not(seen[v]), outer));
       }
       if (known) {
@@ -130,12 +129,14 @@ class Kernel {
       }
     }
     statistics_.sampled += seenCount;
+    fetchOccludersAhead(x, y);
     for (int v = 0; v < kVectors; ++v) {
+      setFrame(pixels[v]);
       if (Points::kTurned) turnFrame(pixels[v], hn::LoadU(d, cosines_ + v * kLanes), hn::LoadU(d, sines_ + v * kLanes));
       const VF outer = outerRays(pixels[v], x + v * kLanes);
       open &= uint8_t(hn::AllTrue(d, hn::Eq(outer, all)));
       hn::StoreU(outer, d, numerator + v * kLanes);
-      if (kNeighbour) {
+      if (kReads) {
         pending_[pendingCount_++] = x + v * kLanes;
         if (pendingCount_ == pendingMost_) subtractPending(y);
       }
@@ -143,11 +144,13 @@ class Kernel {
   }
 
   // The gathers' lines come from far down, and no hardware sees that they advance by a row at a time.
+  static constexpr int kRowsAhead = 64;
+  HWY_INLINE void fetchOccludersAhead(int x, int y) const {  // where some are likely: below what is not known to be open
+    const int row = std::min(y + kRowsAhead, g_.height - 1);
+    for (int c = 0; kReads && c < 3; ++c) hwy::Prefetch(read_[c].row(row) + x);
+  }
   HWY_INLINE void fetchAhead(int x, int y) const {
-    constexpr int kRows = 64;
-    const int row = std::min(y + kRows, g_.height - 1);
-    hwy::Prefetch(g_.depth.row(row) + x);
-    for (int c = 0; kNeighbour && c < 3; ++c) hwy::Prefetch(g_.albedo[c].row(row) + x);
+    hwy::Prefetch(g_.depth.row(std::min(y + kRowsAhead, g_.height - 1)) + x);
     const int next = std::min(y + 1, g_.height - 1);
     for (int c = 0; c < 3; ++c) hwy::Prefetch(g_.normal[c].row(next) + x);
   }
@@ -162,7 +165,7 @@ class Kernel {
             hn::Neg(hn::LoadU(d, g_.normal[2].row(y) + x))};
   }
 
-  // Counts the rays that stay outside; with kNeighbour also notes what the others meet.
+  // Counts the rays that stay outside; with kReads also notes what the others meet.
   HWY_INLINE VF outerRays(const Pixels& at, int x) {
     const DF d;
     const DI di;
@@ -187,7 +190,7 @@ class Kernel {
         hit = kOneStep ? inner : hn::Or(hit, inner);
       }
       outer = hn::IfThenElse(hit, outer, hn::Add(outer, one));
-      if (kNeighbour) hits_.set(firstRay + i * Hits::kStride, hit, met);
+      if (kReads) hits_.set(firstRay + i * Hits::kStride, hit, met);
     }
     return outer;
   }
@@ -197,13 +200,14 @@ class Kernel {
     for (int v = 0; v < pendingCount_; ++v) {
       float* denominator[3];
       for (int c = 0; c < 3; ++c) denominator[c] = out_.denominator[c].row(y) + pending_[v];
-      hits_.subtract(size_t(v) * rays, rays, g_, denominator);
+      hits_.subtract(size_t(v) * rays, rays, read_, denominator);
     }
     pendingCount_ = 0;
   }
 
   const TransferInput& in_;
   const raster::GBuffer& g_;
+  const raster::Plane<float>* const read_;  // three, or null
   TransferSums& out_;
   const DepthMap<kPerspective> map_;
   Points points_;
@@ -218,17 +222,17 @@ class Kernel {
   Hits hits_;
 };
 
-template <bool kPerspective, bool kOneStep, bool kNeighbour>
+template <bool kPerspective, bool kOneStep, bool kReads>
 TransferStatistics transferRows(const TransferInput& in, int y0, int y1, TransferSums& out) {
   if (in.settings.estimator != Estimator::Paper)
-    return Kernel<DealtPoints, kPerspective, kOneStep, kNeighbour>(in, out).rows(y0, y1);
-  return Kernel<SharedPoints, kPerspective, kOneStep, kNeighbour>(in, out).rows(y0, y1);
+    return Kernel<DealtPoints, kPerspective, kOneStep, kReads>(in, out).rows(y0, y1);
+  return Kernel<SharedPoints, kPerspective, kOneStep, kReads>(in, out).rows(y0, y1);
 }
 
 template <bool kPerspective, bool kOneStep>
 TransferStatistics transferRows(const TransferInput& in, int y0, int y1, TransferSums& out) {
-  const bool neighbour = in.settings.albedo == TransferAlbedo::Neighbour;
-  if (neighbour) return transferRows<kPerspective, kOneStep, true>(in, y0, y1, out);
+  const bool reads = in.settings.albedo != TransferAlbedo::Own;
+  if (reads) return transferRows<kPerspective, kOneStep, true>(in, y0, y1, out);
   return transferRows<kPerspective, kOneStep, false>(in, y0, y1, out);
 }
 
@@ -244,6 +248,9 @@ TransferStatistics AmbientTransfer(const TransferInput& in, int y0, int y1, Tran
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include <stdexcept>
+#include <string>
+
 #include "obscura/post/line_samples.h"
 #include "obscura/raster/dispatch.h"
 #include "obscura/raster/float_environment.h"
@@ -258,8 +265,23 @@ TransferStatistics ambientTransfer(const TransferInput& in, int y0, int y1, Tran
   return OBSCURA_DISPATCH(AmbientTransfer, target)(in, y0, y1, out);
 }
 
+namespace {
+
+void checkRadiance(const TransferInput& in) {
+  if (!in.radiance) throw std::invalid_argument("the transfer of stored radiance has no radiance to read");
+  for (const raster::Plane<float>& plane : in.radiance->rgb) {
+    if (plane.width() == in.g->width && plane.height() == in.g->height) continue;
+    const auto size = [](int w, int h) { return std::to_string(w) + "x" + std::to_string(h); };
+    throw std::invalid_argument("a plane of the radiance has " + size(plane.width(), plane.height()) +
+                                " pixels, the G-buffer " + size(in.g->width, in.g->height));
+  }
+}
+
+}  // namespace
+
 TransferSums makeTransferSums(const TransferInput& in, TransferSums used) {
-  const bool denominators = in.settings.albedo == TransferAlbedo::Neighbour;
+  if (in.settings.albedo == TransferAlbedo::Radiance) checkRadiance(in);
+  const bool denominators = in.settings.albedo != TransferAlbedo::Own;
   used.numerator.resize(in.g->width, in.g->height);
   used.open.resize((in.g->width + 15) / 16, in.g->height);
   for (auto& plane : used.denominator) plane.resize(denominators ? in.g->width : 0, denominators ? in.g->height : 0);

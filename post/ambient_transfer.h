@@ -1,4 +1,4 @@
-// In:  depth, normals (and albedo, for the neighbours' W) of the G-buffer.
+// In:  depth, normals (and albedo, for the neighbours' W) of the G-buffer; a lit frame, for that of stored radiance.
 // Out: per pixel the numerator and denominator of the ambient transfer (long paper, equation 9 and its shader).
 #pragma once
 
@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 
 #include "obscura/post/depth_bounds.h"
+#include "obscura/post/linear_color.h"
 #include "obscura/post/projector.h"
 #include "obscura/post/settings.h"
 #include "obscura/raster/gbuffer.h"
@@ -19,7 +20,8 @@ namespace obscura::post {
 // not stored.
 struct TransferSums {
   raster::Plane<float> numerator;       // test rays that stay outside: 0 ... n, a whole number; n where empty
-  raster::Plane<float> denominator[3];  // n minus the occluders' albedos, per channel
+  // Per channel n minus the occluders' albedos; TransferAlbedo::Radiance: 0 minus their radiances.
+  raster::Plane<float> denominator[3];
   raster::Plane<uint8_t> open;          // one element per 16 pixels of a row: 1 where all numerators are n
 };
 
@@ -39,9 +41,12 @@ struct TransferInput {
   std::vector<glm::vec3> offsets;  // transferSamples(settings): n, or 16 n
   // Of this depth and projector, whole: where they show that every ray stays outside, none is followed. Null: all are.
   const DepthBounds* bounds = nullptr;
+  // For TransferAlbedo::Radiance: what each pixel of the G-buffer sends out, linear, >= 0, of its size: any lit frame, as
+  // light() makes one. Where something else than a number >= 0 is met, the windows concerned have no bounced light.
+  const LinearColor* radiance = nullptr;
 };
 
-// Allocates what the settings need. `used`, here and in the other make functions of the post process: planes of an earlier
+// Allocates what the settings need; std::invalid_argument if the radiance is needed and is not there or of another size. `used`, here and in the other make functions of the post process: planes of an earlier
 // frame, which serve again where they have the right size.
 TransferSums makeTransferSums(const TransferInput& in, TransferSums used = {});
 

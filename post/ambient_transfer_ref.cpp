@@ -19,7 +19,7 @@ void shade(const TransferInput& in, int x, int y, TransferSums& out) {
   const AmbientSettings& s = in.settings;
   const float n = float(s.samples);
   float num = 0;
-  glm::vec3 den(n);
+  glm::vec3 den(s.albedo == TransferAlbedo::Radiance ? 0 : n);
   const float depth = g.depth.at(x, y);
   const bool empty = !(depth < std::numeric_limits<float>::infinity());
   if (empty) num = n;
@@ -55,11 +55,14 @@ void shade(const TransferInput& in, int x, int y, TransferSums& out) {
       outer = !(behind > s.bias && behind < deepest && scPos.z > projector.zNear);
     }
     if (outer) num += 1;
-    else if (s.albedo == TransferAlbedo::Neighbour)
-      for (int c = 0; c < 3; ++c) den[c] -= g.albedo[c].at(occluder.x, occluder.y);
+    else
+      for (int c = 0; c < 3; ++c) {
+        if (s.albedo == TransferAlbedo::Neighbour) den[c] -= g.albedo[c].at(occluder.x, occluder.y);
+        if (s.albedo == TransferAlbedo::Radiance) den[c] -= in.radiance->rgb[c].at(occluder.x, occluder.y);
+      }
   }
   out.numerator.at(x, y) = num;
-  if (s.albedo == TransferAlbedo::Neighbour)
+  if (s.albedo != TransferAlbedo::Own)
     for (int c = 0; c < 3; ++c) out.denominator[c].at(x, y) = den[c];
 }
 

@@ -22,7 +22,7 @@ struct Sums {
   VF numerator, denominator[3], count;
 };
 
-// kChannels of the denominator are summed: 3 for the neighbours' W, else 0. kInside: no lane's window leaves the row.
+// kChannels of the denominator are summed: 0 for the W of the own albedo, else 3. kInside: no lane's window leaves the row.
 // The order of the sum is by rows, then columns.
 template <class Guide, int kChannels, bool kInside>
 HWY_INLINE Sums sumWindow(const Guide& guide, const Window& window, int width, int x) {
@@ -69,7 +69,8 @@ HWY_INLINE void fetchAhead(const raster::GBuffer& g, const TransferSums& sums, i
   for (int c = 0; c < kChannels; ++c) hwy::Prefetch(sums.denominator[c].row(row) + x);
 }
 
-template <class Guide, int kChannels>
+// kChannels as above; kStored: of radiances.
+template <class Guide, int kChannels, bool kStored>
 void filterRow(const TransferInput& in, const TransferSums& sums, int y, Transfer& out) {
   const DF d;
   const raster::GBuffer& g = *in.g;
@@ -87,10 +88,13 @@ void filterRow(const TransferInput& in, const TransferSums& sums, int y, Transfe
     window.yRay[j] = (float(row + in.projector.yFirst) + 0.5f - in.projector.yCenter) * in.projector.yInverse;
   }
   float* obscurance = out.obscurance.empty() ? nullptr : out.obscurance.row(y);
-  float* w[3] = {};
+  float* w[3] = {};  // or the bounced light
+  raster::Plane<float>* const planes = kStored ? out.bounced : out.w;
+  const VF ofOpen = hn::Set(d, kStored ? 0.0f : 1.0f);
   const float* albedo[3] = {};
-  for (int c = 0; c < 3 && !out.w[0].empty(); ++c) {
-    w[c] = out.w[c].row(y);
+  const bool speaksOf = kStored || in.settings.albedo != TransferAlbedo::Radiance;
+  for (int c = 0; c < 3 && speaksOf && !planes[0].empty(); ++c) {
+    w[c] = planes[c].row(y);
     if (kChannels == 0) albedo[c] = g.albedo[c].row(y);
   }
   bool open = false;
@@ -99,7 +103,7 @@ void filterRow(const TransferInput& in, const TransferSums& sums, int y, Transfe
     const MF seen = hn::Lt(hn::LoadU(d, window.depth[2] + x), infinity);
     if (open || hn::AllFalse(d, seen)) {
       if (obscurance) hn::StoreU(one, d, obscurance + x);
-      for (int c = 0; w[0] && c < 3; ++c) hn::StoreU(one, d, w[c] + x);
+      for (int c = 0; w[0] && c < 3; ++c) hn::StoreU(ofOpen, d, w[c] + x);
       continue;
     }
     Sums s;
@@ -117,6 +121,12 @@ void filterRow(const TransferInput& in, const TransferSums& sums, int y, Transfe
     if (obscurance) hn::StoreU(hn::IfThenElse(seen, hn::Div(s.numerator, total), one), d, obscurance + x);
     for (int c = 0; w[0] && c < 3; ++c) {
       VF denominator = s.denominator[c];
+      if (kStored) {
+        const VF light = hn::Sub(hn::Zero(d), denominator), most = hn::Set(d, std::numeric_limits<float>::max());
+        const MF some = hn::And(hn::Gt(light, hn::Zero(d)), seen);
+        hn::StoreU(hn::Div(hn::IfThenElseZero(some, hn::Min(light, most)), total), d, w[c] + x);
+        continue;
+      }
       if (kChannels == 0)
         denominator = hn::Sub(total, hn::Mul(hn::LoadU(d, albedo[c] + x), hn::Sub(total, s.numerator)));
       const MF whole = hn::Not(hn::Gt(denominator, s.numerator));
@@ -126,10 +136,17 @@ void filterRow(const TransferInput& in, const TransferSums& sums, int y, Transfe
   }
 }
 
+template <class Guide, int kChannels, bool kStored>
+void filterRows(const TransferInput& in, const TransferSums& sums, int y0, int y1, Transfer& out) {
+  for (int y = y0; y < y1; ++y) filterRow<Guide, kChannels, kStored>(in, sums, y, out);
+}
+
 template <class Guide>
 void filterRows(const TransferInput& in, const TransferSums& sums, int y0, int y1, Transfer& out) {
-  const bool neighbour = in.settings.albedo == TransferAlbedo::Neighbour && !out.w[0].empty();
-  for (int y = y0; y < y1; ++y) neighbour ? filterRow<Guide, 3>(in, sums, y, out) : filterRow<Guide, 0>(in, sums, y, out);
+  const TransferAlbedo albedo = in.settings.albedo;
+  if (albedo == TransferAlbedo::Radiance && !out.bounced[0].empty()) return filterRows<Guide, 3, true>(in, sums, y0, y1, out);
+  if (albedo == TransferAlbedo::Neighbour && !out.w[0].empty()) return filterRows<Guide, 3, false>(in, sums, y0, y1, out);
+  filterRows<Guide, 0, false>(in, sums, y0, y1, out);
 }
 
 void DepthFilter(const TransferInput& in, const TransferSums& sums, int y0, int y1, Transfer& out) {
@@ -155,9 +172,11 @@ void depthFilter(const TransferInput& in, const TransferSums& sums, int y0, int 
   OBSCURA_DISPATCH(DepthFilter, target)(in, sums, y0, y1, out);
 }
 
-Transfer makeTransfer(int width, int height, bool obscurance, bool w, Transfer used) {
-  used.obscurance.resize(obscurance ? width : 0, obscurance ? height : 0);
-  for (auto& plane : used.w) plane.resize(w ? width : 0, w ? height : 0);
+Transfer makeTransfer(int width, int height, const TransferPlanes& planes, Transfer used) {
+  const auto resize = [&](raster::Plane<float>& plane, bool there) { plane.resize(there ? width : 0, there ? height : 0); };
+  resize(used.obscurance, planes.obscurance);
+  for (auto& plane : used.w) resize(plane, planes.w);
+  for (auto& plane : used.bounced) resize(plane, planes.bounced);
   return used;
 }
 

@@ -31,7 +31,8 @@ bool counts(const TransferInput& in, int x, int y, int u, int v) {
 void filterPixel(const TransferInput& in, const TransferSums& sums, int x, int y, Transfer& out) {
   const raster::GBuffer& g = *in.g;
   const float z = g.depth.at(x, y);
-  const bool own = in.settings.albedo == TransferAlbedo::Own, transfer = !out.w[0].empty();
+  const bool own = in.settings.albedo == TransferAlbedo::Own, stored = in.settings.albedo == TransferAlbedo::Radiance;
+  const bool transfer = !(stored ? out.bounced : out.w)[0].empty();
   float numerator = 0, denominator[3] = {0, 0, 0}, rays = 0;
   const int before = in.settings.filter ? 2 : 0, after = in.settings.filter ? 1 : 0;
   for (int j = y - before; j <= y + after; ++j)
@@ -45,6 +46,11 @@ void filterPixel(const TransferInput& in, const TransferSums& sums, int x, int y
   const bool empty = !(z < std::numeric_limits<float>::infinity());
   if (!out.obscurance.empty()) out.obscurance.at(x, y) = empty ? 1 : numerator / rays;
   for (int c = 0; c < 3 && transfer; ++c) {
+    if (stored) {
+      const float light = 0 - denominator[c], most = std::numeric_limits<float>::max();
+      out.bounced[c].at(x, y) = !empty && light > 0 ? std::min(light, most) / rays : 0;
+      continue;
+    }
     const float den = own ? rays - g.albedo[c].at(x, y) * (rays - numerator) : denominator[c];
     out.w[c].at(x, y) = !empty && den > numerator ? numerator / den : 1;
   }

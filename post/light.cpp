@@ -13,20 +13,122 @@ HWY_BEFORE_NAMESPACE();
 namespace obscura::post {
 namespace HWY_NAMESPACE {
 
-void Light(const LightInput& in, int y0, int y1, LinearColor& out) {
+constexpr float kMost = std::numeric_limits<float>::max(), kInfinity = std::numeric_limits<float>::infinity();
+
+// La for vectors of pixels. Which of its parts there are is the same for all of a frame.
+template <bool kVaries>
+class Ambient {
+ public:
+  Ambient(const raster::GBuffer& g, const AmbientLight& in) : g_(g), in_(in) {
+    for (const AmbientDirection& k : in.directions) mean_ += k.color;
+    if (!in.directions.empty()) mean_ /= float(in.directions.size());
+  }
+
+  HWY_INLINE V3 at(int x, int y) const {
+    const DF d;
+    V3 la{hn::Set(d, in_.color.x), hn::Set(d, in_.color.y), hn::Set(d, in_.color.z)};
+    if (!kVaries) return la;
+    if (!in_.instances.empty()) la = ofInstance(x, y, la);
+    if (!in_.directions.empty()) {
+      const V3 by = byNormal(x, y);
+      la = {hn::Mul(la.x, by.x), hn::Mul(la.y, by.y), hn::Mul(la.z, by.z)};
+    }
+    return la;
+  }
+
+ private:
+  HWY_INLINE V3 ofInstance(int x, int y, const V3& otherwise) const {
+    const DF d;
+    const DI di;
+    const VI id = hn::BitCast(di, hn::LoadU(hn::RebindToUnsigned<DF>(), g_.instance.row(y) + x)), zero = hn::Zero(di);
+    const auto known = hn::And(hn::Gt(id, hn::Set(di, -1)), hn::Lt(id, hn::Set(di, int32_t(in_.instances.size()))));
+    const VI first = hn::IfThenElse(known, hn::Add(hn::Add(id, id), id), zero);
+    const MF found = hn::RebindMask(d, known);
+    const float* table = &in_.instances[0].x;
+    return {hn::IfThenElse(found, hn::GatherIndex(d, table, first), otherwise.x),
+            hn::IfThenElse(found, hn::GatherIndex(d, table + 1, first), otherwise.y),
+            hn::IfThenElse(found, hn::GatherIndex(d, table + 2, first), otherwise.z)};
+  }
+
+  HWY_INLINE V3 byNormal(int x, int y) const {
+    const DF d;
+    const VF zero = hn::Zero(d);
+    const V3 n{hn::LoadU(d, g_.normal[0].row(y) + x), hn::LoadU(d, g_.normal[1].row(y) + x),
+               hn::LoadU(d, g_.normal[2].row(y) + x)};
+    V3 sum{zero, zero, zero};
+    VF weights = zero;
+    for (const AmbientDirection& k : in_.directions) {
+      const VF facing = dot(n, {hn::Set(d, k.direction.x), hn::Set(d, k.direction.y), hn::Set(d, k.direction.z)});
+      const VF weight = hn::IfThenElseZero(hn::Gt(facing, zero), facing);
+      weights = hn::Add(weights, weight);
+      sum = {hn::Add(sum.x, hn::Mul(weight, hn::Set(d, k.color.x))), hn::Add(sum.y, hn::Mul(weight, hn::Set(d, k.color.y))),
+             hn::Add(sum.z, hn::Mul(weight, hn::Set(d, k.color.z)))};
+    }
+    const MF sound = hn::And(hn::Gt(weights, zero), hn::Lt(weights, hn::Set(d, 1e8f)));
+    const VF by = hn::IfThenElse(sound, weights, hn::Set(d, 1.0f));
+    return {hn::IfThenElse(sound, hn::Div(sum.x, by), hn::Set(d, mean_.x)),
+            hn::IfThenElse(sound, hn::Div(sum.y, by), hn::Set(d, mean_.y)),
+            hn::IfThenElse(sound, hn::Div(sum.z, by), hn::Set(d, mean_.z))};
+  }
+
+  const raster::GBuffer& g_;
+  const AmbientLight& in_;
+  glm::vec3 mean_{0};  // of the directions' colours
+};
+
+HWY_INLINE MF seenAt(const raster::GBuffer& g, int x, int y) {
+  return hn::Lt(hn::LoadU(DF(), g.depth.row(y) + x), hn::Set(DF(), kInfinity));
+}
+
+template <bool kVaries>
+void lightRows(const LightInput& in, int y0, int y1, LinearColor& out) {
   const DF d;
   const raster::GBuffer& g = *in.g;
+  const Ambient<kVaries> ambient(g, in.ambient);
   const bool emits = !g.emissive[0].empty();
+  const bool bounced = in.occlusion == Occlusion::Transfer && !in.transfer->bounced[0].empty();
+  const bool obscured = in.occlusion == Occlusion::Obscurance || bounced;
   for (int y = y0; y < y1; ++y)
     for (int x = 0; x < g.width; x += int(hn::Lanes(d))) {
-      const MF seen = hn::Lt(hn::LoadU(d, g.depth.row(y) + x), hn::Set(d, std::numeric_limits<float>::infinity()));
+      const MF seen = seenAt(g, x, y);
+      const V3 la = ambient.at(x, y);
+      const VF channels[3] = {la.x, la.y, la.z};
       for (int c = 0; c < 3; ++c) {
         VF color = hn::LoadU(d, g.albedo[c].row(y) + x);
-        if (in.occlusion == Occlusion::Obscurance) color = hn::Mul(color, hn::LoadU(d, in.transfer->obscurance.row(y) + x));
-        if (in.occlusion == Occlusion::Transfer) color = hn::Mul(color, hn::LoadU(d, in.transfer->w[c].row(y) + x));
-        color = hn::Mul(color, hn::Set(d, in.ambient[c]));
+        if (bounced) {
+          const VF arriving = hn::Mul(hn::LoadU(d, in.transfer->obscurance.row(y) + x), channels[c]);
+          color = hn::Mul(color, hn::Add(arriving, hn::LoadU(d, in.transfer->bounced[c].row(y) + x)));
+        } else {
+          if (obscured) color = hn::Mul(color, hn::LoadU(d, in.transfer->obscurance.row(y) + x));
+          else if (in.occlusion == Occlusion::Transfer) color = hn::Mul(color, hn::LoadU(d, in.transfer->w[c].row(y) + x));
+          color = hn::Mul(color, channels[c]);
+        }
         if (emits) color = hn::Add(color, hn::LoadU(d, g.emissive[c].row(y) + x));
         hn::StoreU(hn::IfThenElse(seen, color, hn::Set(d, in.background[c])), d, out.rgb[c].row(y) + x);
+      }
+    }
+}
+
+void Light(const LightInput& in, int y0, int y1, LinearColor& out) {
+  const bool varies = in.ambient.needsInstance() || in.ambient.needsNormal();
+  varies ? lightRows<true>(in, y0, y1, out) : lightRows<false>(in, y0, y1, out);
+}
+
+void TransferOfBounced(const LightInput& in, int y0, int y1, raster::Plane<float>* w) {
+  const DF d;
+  const raster::GBuffer& g = *in.g;
+  const Ambient<true> ambient(g, in.ambient);
+  const VF one = hn::Set(d, 1.0f);
+  for (int y = y0; y < y1; ++y)
+    for (int x = 0; x < g.width; x += int(hn::Lanes(d))) {
+      const MF seen = seenAt(g, x, y);
+      const V3 la = ambient.at(x, y);
+      const VF channels[3] = {la.x, la.y, la.z}, o = hn::LoadU(d, in.transfer->obscurance.row(y) + x);
+      for (int c = 0; c < 3; ++c) {
+        const MF lit = hn::Gt(channels[c], hn::Zero(d));
+        const VF added = hn::Div(hn::LoadU(d, in.transfer->bounced[c].row(y) + x), hn::IfThenElse(lit, channels[c], one));
+        const VF sum = hn::Min(hn::Add(o, hn::IfThenElseZero(lit, added)), hn::Set(d, kMost));
+        hn::StoreU(hn::IfThenElse(seen, sum, one), d, w[c].row(y) + x);
       }
     }
 }
@@ -42,10 +144,16 @@ HWY_AFTER_NAMESPACE();
 namespace obscura::post {
 
 HWY_EXPORT(Light);
+HWY_EXPORT(TransferOfBounced);
 
 void light(const LightInput& in, int y0, int y1, LinearColor& out, raster::Target target) {
   const raster::FloatEnvironment environment;
   OBSCURA_DISPATCH(Light, target)(in, y0, y1, out);
+}
+
+void transferOfBounced(const LightInput& in, int y0, int y1, raster::Plane<float> (&w)[3], raster::Target target) {
+  const raster::FloatEnvironment environment;
+  OBSCURA_DISPATCH(TransferOfBounced, target)(in, y0, y1, w);
 }
 
 LinearColor makeLinearColor(int width, int height, LinearColor used) {

@@ -1,32 +1,38 @@
-// In:  albedo, emission, depth; O or W.
+// In:  albedo, emission, depth; O, W or the bounced light; what La depends on.
 // Out: linear colour, Lr = a W La + emission (long paper, equation 2).
 #pragma once
 
 #include <glm/vec3.hpp>
 
+#include "obscura/post/ambient_light.h"
 #include "obscura/post/depth_filter.h"
+#include "obscura/post/linear_color.h"
 #include "obscura/raster/gbuffer.h"
 #include "obscura/raster/target.h"
 
 namespace obscura::post {
 
-enum class Occlusion : uint8_t { None, Obscurance, Transfer };  // what modulates the ambient light: 1, O or W
+// What modulates the ambient light: 1, O or W. With TransferAlbedo::Radiance W La is O La + the bounced light.
+enum class Occlusion : uint8_t { None, Obscurance, Transfer };
 
 struct LightInput {
-  const raster::GBuffer* g = nullptr;  // depth and albedo; emission where the scene has any
+  // Depth and albedo; emission where the scene has any; instance and normal where the ambient light needs them.
+  const raster::GBuffer* g = nullptr;
   const Transfer* transfer = nullptr;  // may be null for Occlusion::None
   Occlusion occlusion = Occlusion::Transfer;
-  glm::vec3 ambient{1};                // La, linear
+  AmbientLight ambient;
   glm::vec3 background{0};             // linear; where nothing was drawn
 };
 
-struct LinearColor {
-  raster::Plane<float> rgb[3];
-};
-
-LinearColor makeLinearColor(int width, int height, LinearColor used = {});
-
+// Without occlusion this is also a first guess of what the occluders send back, see TransferInput::radiance: their
+// emission, and the ambient light reflected as if all of it arrived.
 void light(const LightInput& in, int y0, int y1, LinearColor& out, raster::Target target);
 void lightRef(const LightInput& in, int y0, int y1, LinearColor& out);  // the scalar twin
+
+// W of in.transfer, which holds O and the bounced light: O + bounced / La per channel, never above the largest float. Where
+// La is 0 there is nothing to relate the bounced light to, and W is O (light() loses none of it, as it does not divide).
+// Empty pixels have W = 1. `w` is allocated, in.occlusion and in.background are not read.
+void transferOfBounced(const LightInput& in, int y0, int y1, raster::Plane<float> (&w)[3], raster::Target target);
+void transferOfBouncedRef(const LightInput& in, int y0, int y1, raster::Plane<float> (&w)[3]);  // the scalar twin
 
 }  // namespace obscura::post

@@ -1,25 +1,66 @@
 // Scalar twin of light.cpp.
+#include <algorithm>
 #include <limits>
 
 #include "obscura/post/light.h"
 #include "obscura/raster/float_environment.h"
 
 namespace obscura::post {
+namespace {
+
+glm::vec3 ambientAt(const AmbientLight& in, const raster::GBuffer& g, int x, int y) {
+  glm::vec3 la = in.color;
+  if (!in.instances.empty() && g.instance.at(x, y) < in.instances.size()) la = in.instances[g.instance.at(x, y)];
+  if (in.directions.empty()) return la;
+  glm::vec3 sum(0), all(0);
+  float weights = 0;
+  for (const AmbientDirection& k : in.directions) {
+    const float cosine = g.normal[0].at(x, y) * k.direction.x + g.normal[1].at(x, y) * k.direction.y +
+                         g.normal[2].at(x, y) * k.direction.z;
+    all += k.color;
+    if (!(cosine > 0)) continue;
+    weights += cosine;
+    sum += cosine * k.color;
+  }
+  return la * (weights > 0 && weights < 1e8f ? sum / weights : all / float(in.directions.size()));
+}
+
+bool isSeen(const raster::GBuffer& g, int x, int y) { return g.depth.at(x, y) < std::numeric_limits<float>::infinity(); }
+
+}  // namespace
 
 void lightRef(const LightInput& in, int y0, int y1, LinearColor& out) {
   const raster::FloatEnvironment environment;
   const raster::GBuffer& g = *in.g;
-  for (int c = 0; c < 3; ++c)
-    for (int y = y0; y < y1; ++y)
-      for (int x = 0; x < g.width; ++x) {
-        const float occlusion = in.occlusion == Occlusion::Transfer     ? in.transfer->w[c].at(x, y)
-                                : in.occlusion == Occlusion::Obscurance ? in.transfer->obscurance.at(x, y)
-                                                                        : 1;
-        const float reflected = g.albedo[c].at(x, y) * occlusion * in.ambient[c];
+  for (int y = y0; y < y1; ++y)
+    for (int x = 0; x < g.width; ++x) {
+      const glm::vec3 la = ambientAt(in.ambient, g, x, y);
+      for (int c = 0; c < 3; ++c) {
+        const float a = g.albedo[c].at(x, y);
+        float reflected = a * la[c];
+        if (in.occlusion == Occlusion::Obscurance) reflected = a * in.transfer->obscurance.at(x, y) * la[c];
+        if (in.occlusion == Occlusion::Transfer)
+          reflected = in.transfer->bounced[c].empty()
+                          ? a * in.transfer->w[c].at(x, y) * la[c]
+                          : a * (in.transfer->obscurance.at(x, y) * la[c] + in.transfer->bounced[c].at(x, y));
         const float emitted = g.emissive[c].empty() ? 0 : g.emissive[c].at(x, y);
-        const bool seen = g.depth.at(x, y) < std::numeric_limits<float>::infinity();
-        out.rgb[c].at(x, y) = seen ? reflected + emitted : in.background[c];
+        out.rgb[c].at(x, y) = isSeen(g, x, y) ? reflected + emitted : in.background[c];
       }
+    }
+}
+
+void transferOfBouncedRef(const LightInput& in, int y0, int y1, raster::Plane<float> (&w)[3]) {
+  const raster::FloatEnvironment environment;
+  const raster::GBuffer& g = *in.g;
+  for (int y = y0; y < y1; ++y)
+    for (int x = 0; x < g.width; ++x) {
+      const glm::vec3 la = ambientAt(in.ambient, g, x, y);
+      for (int c = 0; c < 3; ++c) {
+        const float o = in.transfer->obscurance.at(x, y), b = in.transfer->bounced[c].at(x, y);
+        const float sum = la[c] > 0 ? std::min(o + b / la[c], std::numeric_limits<float>::max()) : o;
+        w[c].at(x, y) = isSeen(g, x, y) ? sum : 1;
+      }
+    }
 }
 
 }  // namespace obscura::post

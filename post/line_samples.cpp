@@ -8,6 +8,7 @@
 #include <hwy/highway.h>
 
 #include "obscura/post/depth_map-inl.h"
+#include "obscura/post/ray_hits-inl.h"
 #include "obscura/post/ray_points-inl.h"
 #include "obscura/post/vector-inl.h"
 
@@ -39,7 +40,7 @@ template <bool kPerspective, bool kReads>
 class LineKernel {
  public:
   LineKernel(const TransferInput& in, TransferSums& out)
-      : in_(in), g_(*in.g), out_(out), map_(in), points_(in, 1), inverseRadius_(hn::Set(DF(), 1 / in.settings.radius)) {}
+      : in_(in), g_(*in.g), read_(occluderPlanes(in)), out_(out), map_(in), points_(in, 1), inverseRadius_(hn::Set(DF(), 1 / in.settings.radius)) {}
 
   TransferStatistics rows(int y0, int y1) {
     for (int y = y0; y < y1; ++y) {
@@ -68,12 +69,12 @@ class LineKernel {
     MF sound = hn::And(seen, hn::And(hn::Gt(s.total, hn::Zero(d)), hn::Le(s.inner, s.total)));
     sound = hn::And(sound, hn::Lt(s.total, infinity));
     const VF total = hn::IfThenElse(sound, s.total, one);
-    const auto rest = [&](VF part) HWY_ATTR {
-      return hn::IfThenElse(sound, hn::Sub(all, hn::Mul(all, hn::Div(part, total))), all);
+    const auto rest = [&](VF from, VF part) HWY_ATTR {
+      return hn::IfThenElse(sound, hn::Sub(from, hn::Mul(all, hn::Div(part, total))), from);
     };
-    const VF numerator = rest(s.inner);
+    const VF numerator = rest(all, s.inner), start = in_.settings.albedo == TransferAlbedo::Radiance ? hn::Zero(d) : all;
     hn::StoreU(numerator, d, out_.numerator.row(y) + x);
-    for (int c = 0; kReads && c < 3; ++c) hn::StoreU(rest(s.read[c]), d, out_.denominator[c].row(y) + x);
+    for (int c = 0; kReads && c < 3; ++c) hn::StoreU(rest(start, s.read[c]), d, out_.denominator[c].row(y) + x);
     uint8_t& open = out_.open.at(x / 16, y);
     const uint8_t before = x % 16 == 0 ? 1 : open;
     open = before & uint8_t(hn::AllTrue(d, hn::Or(hn::Eq(numerator, all), hn::Not(inside))));
@@ -158,13 +159,14 @@ class LineKernel {
     const VF inner = larger(smaller(hn::Mul(hn::Sub(atTo, atFrom), weight), whole), zero);
     s.inner = hn::Add(s.inner, hn::IfThenElseZero(hit, inner));
     for (int c = 0; kReads && c < 3; ++c) {
-      const VF read = hn::Mul(inner, hn::GatherIndex(d, g_.albedo[c].data(), texel));
+      const VF read = hn::Mul(inner, hn::GatherIndex(d, read_[c].data(), texel));
       s.read[c] = hn::Add(s.read[c], hn::IfThenElseZero(hit, read));
     }
   }
 
   const TransferInput& in_;
   const raster::GBuffer& g_;
+  const raster::Plane<float>* const read_;  // three, or null
   TransferSums& out_;
   const DepthMap<kPerspective> map_;
   DealtPoints points_;

@@ -63,12 +63,16 @@ void integrate(const TransferInput& in, int x, int y, TransferSums& out) {
     if (!(inner < whole)) inner = whole;
     if (!(inner > 0)) inner = 0;
     innerSum += inner;
-    for (int channel = 0; channel < 3 && reads; ++channel) readSum[channel] += inner * gbuffer.albedo[channel].at(texel.x, texel.y);
+    for (int channel = 0; channel < 3 && reads; ++channel) {
+      const raster::Plane<float>& read = s.albedo == TransferAlbedo::Radiance ? in.radiance->rgb[channel] : gbuffer.albedo[channel];
+      readSum[channel] += inner * read.at(texel.x, texel.y);
+    }
   }
   const bool sound = seen && total > 0 && innerSum <= total && total < std::numeric_limits<float>::infinity();
   out.numerator.at(x, y) = sound ? n - n * (innerSum / total) : n;
+  const float whole = s.albedo == TransferAlbedo::Radiance ? 0 : n;
   for (int channel = 0; channel < 3 && reads; ++channel)
-    out.denominator[channel].at(x, y) = sound ? n - n * (readSum[channel] / total) : n;
+    out.denominator[channel].at(x, y) = sound ? whole - n * (readSum[channel] / total) : whole;
 }
 
 }  // namespace

@@ -5,8 +5,9 @@
 // c' = c + |a| off_u + |b| off_v. As u = x xScale / z + xCenter, and v likewise, this is l(p) / z with the linear form
 //   l(p) = g . p,   g = (a xScale, b yScale, a xCenter + b yCenter + c').
 // Where l(p) <= 1: z <= z*, p is outside. Else z - z* <= z (1 - 1/l) <= z (l - 1): p is outside if that is <= bias.
-// With p = x + X T' + Y B' + Z N and r = |(X, Y)|:  l(p) <= l(x) + r (|g . T| + |g . B|) + Z g . N, whatever the
-// rotation; g points into the plane, so that g . N < 0 and rays that rise from it lower l.
+// With p = x + X T' + Y B' + Z N and r = |(X, Y)|:  l(p) <= l(x) + r |g x N| + Z g . N, whatever the rotation; g points
+// into the plane, so that g . N < 0 and rays that rise from it lower l. For X T' + Y B' = r e, e a unit vector across N,
+// and of g only the part across N, of length |g x N|, meets it: the frame itself need not be known.
 // Orthographic: -z* <= a u + b v + c, hence z - z* <= l(p) = g . p + k, g = (a xScale, b yScale, 1),
 // k = a xCenter + b yCenter + c', which must not exceed the bias.
 // The upper bound of the containment test plays no part: z - z* <= bias is outside with it and without.
@@ -141,27 +142,31 @@ OpenBlock openBlock(const TransferInput& in, const Reach& reach, int column, int
   return block;
 }
 
-// Lanes whose rays all stay outside; t and b as yet unturned.
+// Lanes whose rays all stay outside.
 template <bool kPerspective>
-HWY_INLINE MF knownOpen(const OpenBlock& block, const Reach& reach, const V3& x, const V3& t, const V3& b, const V3& n,
-                        float bias) {
+HWY_INLINE MF knownOpen(const OpenBlock& block, const Reach& reach, const V3& x, const V3& n, float bias) {
   const DF d;
   const V3 g{hn::Set(d, block.gx), hn::Set(d, block.gy), hn::Set(d, block.gz)};
   const VF k = hn::Set(d, block.k), length = hn::Set(d, reach.length);
   const VF farthest = hn::Add(x.z, length);  // z of no test point is larger
-  const VF aside = hn::Mul(hn::Set(d, reach.across), hn::Add(hn::Abs(dot(g, t)), hn::Abs(dot(g, b))));
+  const V3 across = cross(g, n);
+  const VF aside = hn::Mul(hn::Set(d, reach.across), hn::Sqrt(dot(across, across)));
   const VF facing = dot(g, n);
   const VF rise =
       hn::Mul(facing, hn::IfThenElse(hn::Lt(facing, hn::Zero(d)), hn::Set(d, reach.least), length));
-  // Some twenty roundings, each of at most 2^-24 of a part of this.
+  // |g|_1 times what bounds the coordinates of test points. Some thirty roundings, each of at most 2^-24 of a part of this;
+  // and T is unit by its making, but from being perpendicular to N it may be off by 2^-12, as seen below.
   const V3 size{hn::Add(hn::Abs(x.x), length), hn::Add(hn::Abs(x.y), length), farthest};
-  const VF rounding = hn::Mul(hn::Add(dot({hn::Abs(g.x), hn::Abs(g.y), hn::Abs(g.z)}, size), hn::Abs(k)),
-                              hn::Set(d, 0x1p-18f));
-  VF l = hn::Add(hn::Add(hn::Add(dot(g, x), k), hn::Add(aside, rise)), rounding);
+  const V3 slopes{hn::Abs(g.x), hn::Abs(g.y), hn::Abs(g.z)};
+  const VF rounding = hn::Mul(hn::Add(dot(slopes, size), hn::Abs(k)), hn::Set(d, 0x1p-18f));
+  const VF tilted = hn::Mul(hn::Mul(hn::Add(hn::Add(slopes.x, slopes.y), slopes.z), hn::Set(d, reach.across)), hn::Set(d, 0x1p-12f));
+  VF l = hn::Add(hn::Add(hn::Add(hn::Add(dot(g, x), k), hn::Add(aside, rise)), tilted), rounding);
   if (kPerspective) l = hn::Mul(hn::Sub(l, hn::Set(d, 1.0f)), farthest);
-  // T is unit by its making; what it lacks in perpendicularity where N is nearly parallel to (0, 1, 0.01) shows here.
-  const MF right = hn::And(hn::Le(dot(n, n), hn::Set(d, 1.001f)), hn::Le(hn::Abs(dot(t, n)), hn::Set(d, 1e-3f)));
-  return hn::And(hn::Le(l, hn::Set(d, bias)), right);
+  // N must be nearly unit, and N x (0, 1, 0.01) not shorter than 1/1000: it errs by 2e-7 at most, T by 2e-4 of its length.
+  const VF square = dot(n, n), tx = hn::Sub(hn::Mul(n.y, hn::Set(d, 0.01f)), n.z);
+  const MF unit = hn::And(hn::Le(square, hn::Set(d, 1.001f)), hn::Ge(square, hn::Set(d, 0.999f)));
+  const MF framed = hn::Ge(hn::Add(hn::Mul(tx, tx), hn::Mul(n.x, n.x)), hn::Set(d, 1e-6f));
+  return hn::And(hn::Le(l, hn::Set(d, bias)), hn::And(unit, framed));
 }
 
 }  // namespace HWY_NAMESPACE

@@ -1,4 +1,4 @@
-// Per target: what the rays met whose albedos make the denominators.
+// Per target: what the rays met whose albedos or radiances make the denominators.
 #if defined(OBSCURA_POST_RAY_HITS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef OBSCURA_POST_RAY_HITS_INL_H_
 #undef OBSCURA_POST_RAY_HITS_INL_H_
@@ -8,13 +8,24 @@
 
 #include <cstring>
 
+#include "obscura/post/ambient_transfer.h"
 #include "obscura/post/sample_sets.h"
 #include "obscura/post/vector-inl.h"
-#include "obscura/raster/gbuffer.h"
+#include "obscura/raster/plane.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace obscura::post {
 namespace HWY_NAMESPACE {
+
+// What the occluders are read from: their albedos or their radiances; null if nothing is read.
+inline const raster::Plane<float>* occluderPlanes(const TransferInput& in) {
+  switch (in.settings.albedo) {
+    case TransferAlbedo::Own: break;
+    case TransferAlbedo::Neighbour: return in.g->albedo;
+    case TransferAlbedo::Radiance: return in.radiance->rgb;
+  }
+  return nullptr;
+}
 
 // What the rays of a few vectors of pixels met. Noted here first and subtracted later, so that the tests of one vector
 // need not wait for the hits of another.
@@ -29,9 +40,9 @@ struct Hits {
     hn::StoreMaskBits(DF(), hit, bits + ray / 8);
   }
 
-  // For `rays` rays from `first` on: denominator[c][lane] -= albedo of what is met, in the order of the samples.
-  HWY_INLINE void subtract(size_t first, size_t rays, const raster::GBuffer& g, float* const denominator[3]) const {
-    const float *red = g.albedo[0].data(), *green = g.albedo[1].data(), *blue = g.albedo[2].data();
+  // For `rays` rays from `first` on: denominator[c][lane] -= planes[c] of what is met, in the order of the samples.
+  HWY_INLINE void subtract(size_t first, size_t rays, const raster::Plane<float>* planes, float* const denominator[3]) const {
+    const float *red = planes[0].data(), *green = planes[1].data(), *blue = planes[2].data();
     float *r = denominator[0], *gr = denominator[1], *b = denominator[2];
     for (size_t from = first; from < first + rays; from += 64) {
       const size_t bytes = HWY_MIN(size_t(8), (first + rays - from) / 8);

@@ -14,10 +14,11 @@ enum class Membership : uint8_t {
   Exponential,  // (1 - e^(-tau d)) / (1 - e^(-tau R)), tau = 5 / R
 };
 
-// Which surroundings W takes for granted.
+// What the surroundings are taken to send back, which makes the W.
 enum class TransferAlbedo : uint8_t {
   Own,        // equation 4 of the short paper: a(y) = a(x), W(y) = W(x)
   Neighbour,  // equation 6 of the long one: W(y) = W(x), albedo read where the occluder is seen
+  Radiance,   // section 4.1 of the long one: the radiance that the frame holds where the occluder is seen
 };
 
 // Where the pixel's rays come from.

@@ -54,6 +54,12 @@ TEST_CASE("cli: what the command line cannot mean ends with 2 and says why") {
   w.failing(2, {"--digest", "--supersample", "3"}, "1|2|4");
   w.failing(2, {"--digest", "--supersample", "4", "--size", "64x4097"}, "256x16388 sub-pixels");
   w.failing(2, {"--digest", "--size", "8193x8", "--supersample", "2"}, "16384 a side");
+  for (const char* node : {"hall", "=1,1,1", "hall=", "hall=1,1", "hall=#12345", "hall=1,-1,1"})
+    w.failing(2, {"--digest", "--ambient-node", node}, "NAME=COLOR");
+  w.failing(2, {"--digest", "--ambient-node", "nowhere=1,1,1"}, "no node of the scene is named \"nowhere\"");
+  for (const char* six : {"1,1,1", "1,1,1/1,1,1/1,1,1/1,1,1/1,1,1", "1,1,1/1,1,1/1,1,1/1,1,1/1,1,1/1,1,-1", "#fff/#fff/#fff/#fff/#fff/#fff",
+                          "1,1,1/1,1,1/1,1,1/1,1,1/1,1,1/1,1,1/1,1,1"})
+    w.failing(2, {"--digest", "--ambient-directional", six}, "PX/NX/PY/NY/PZ/NZ");
   w.failing(2, {"--digest", "--samples", "65"}, "1...64");
   w.failing(2, {"--digest", "--samples", "8.5"}, "1...64");
   w.failing(2, {"--digest", "--steps", "0"}, "1...4");

@@ -211,7 +211,9 @@ TEST_CASE("cli: --supersample changes the picture and not its size, and the refe
 TEST_CASE("cli: every option of the ambient transfer and of the light changes the colour") {
   const Workplace w;
   const std::string standard = w.digests({}).at("color");
-  for (const Words& options : std::vector<Words>{{"--ambient", "off"}, {"--ambient", "obscurance"}, {"--albedo", "own"},
+  for (const Words& options : std::vector<Words>{{"--ambient", "off"}, {"--ambient", "obscurance"}, {"--albedo", "own"}, {"--albedo", "radiance"},
+                                                 {"--silhouette-bound", "off"},
+                                                 {"--ambient-directional", "1,1,1/1,1,1/1,0,1/0,0,0/1,1,1/1,1,1"},
                                                  {"--samples", "9"}, {"--steps", "2"}, {"--radius", "0.3"},
                                                  {"--membership", "classic"}, {"--membership", "sqrt"},
                                                  {"--membership", "exponential"}, {"--bias", "0.1"},

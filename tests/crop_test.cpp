@@ -5,9 +5,8 @@
 
 #include <oneapi/tbb/global_control.h>
 
-#include "obscura/apps/pictures.h"
 #include "obscura/engine/crop.h"
-#include "test_scene.h"
+#include "frame_checks.h"
 
 using namespace obscura;
 using namespace obscura::tests;
@@ -18,59 +17,12 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-engine::Scene sceneFrom(const TestScene& from) {
-  engine::Scene s;
-  for (const TestMesh& m : from.meshes) {
-    engine::Mesh& mesh = s.meshes.emplace_back();
-    mesh.positions = m.positions, mesh.normals = m.normals, mesh.tangents = m.tangents, mesh.colors = m.colors;
-    mesh.uvs[0] = m.uvs, mesh.indices = m.indices;
-  }
-  s.materials = from.materials;
-  for (const raster::TextureView& t : from.textures) {
-    auto texels = std::make_shared<std::vector<uint32_t>>(t.texels.begin(), t.texels.end());
-    s.textures.push_back({"", texels, t});
-    s.textures.back().view.texels = *texels;
-  }
-  // The engine keeps one material a mesh: as many meshes as instances.
-  for (const raster::Instance& i : from.instances) {
-    engine::Mesh mesh = s.meshes[0];
-    mesh.material = i.material;
-    s.instances.push_back({uint32_t(s.meshes.size()), 0, i.worldFromObject});
-    s.meshes.push_back(std::move(mesh));
-  }
-  return s;
-}
-
-std::vector<Aov> allAovs() {
-  std::vector<Aov> all;
-  for (const engine::AovInfo& info : engine::allAovs()) all.push_back(info.aov);
-  return all;
-}
-
-// Every plane of a frame and its display bytes, as images.
-std::vector<engine::Image> imagesOf(const engine::Frame& frame) {
-  std::vector<engine::Image> images;
-  for (Aov aov : allAovs()) images.push_back(apps::planeImage(frame, aov));
-  images.push_back(apps::displayPicture(frame));
-  return images;
-}
-
 void paste(const engine::Image& from, const Window& w, engine::Image& to) {
   REQUIRE((from.width == w.width && from.height == w.height));
   const size_t pixel = size_t(to.channels) * bytesOf(to.format);
   for (int y = 0; y < w.height; ++y)
     std::memcpy(&to.bytes[(size_t(w.y + y) * size_t(to.width) + size_t(w.x)) * pixel],
                 &from.bytes[size_t(y) * size_t(w.width) * pixel], size_t(w.width) * pixel);
-}
-
-engine::Frame frameOf(const engine::Scene& scene, const engine::FrameSettings& s, const raster::Settings& raster = {},
-                      bool reference = false) {
-  engine::Renderer renderer(raster, reference);
-  engine::Frame frame;
-  const auto done = renderer.render(scene, s, frame);
-  INFO((done ? "" : done.error().text()));
-  REQUIRE(done.ok());
-  return frame;
 }
 
 // Four columns and four rows of uneven, odd sizes.
@@ -94,8 +46,9 @@ engine::FrameSettings settingsOf(const TestScene& scene, uint32_t seed) {
   s.aovs = allAovs();
   s.display = true;
   s.background = {0.2f, 0.3f, 0.4f};
+  if (seed % 4 == 0) s.ambientDirections = kSixColors;
   post::AmbientSettings& t = s.transfer;
-  t.albedo = seed % 4 < 2 ? post::TransferAlbedo::Neighbour : post::TransferAlbedo::Own;
+  t.albedo = post::TransferAlbedo((seed + seed / 4) % 3);
   t.membership = seed % 2 ? post::Membership::Classic : post::Membership::Linear;
   t.samples = random.integer(4, 12), t.steps = random.integer(1, 2);
   t.radius = random.real(0.1f, 0.8f);

@@ -294,3 +294,43 @@ TEST_CASE("gltf nodes: a skinned mesh is shown at rest, by its node, with one wa
   CHECK(scene.warnings.size() == 1);
   CHECK(moved(scene.instances.at(0).worldFromObject, {0, 0, 0}) == glm::dvec3(5, 0, 0));
 }
+
+TEST_CASE("gltf nodes: an ambient light is that of the nearest ancestor that has one") {
+  GltfBuilder b;
+  b.addTriangle();  // node 0
+  const Json mesh = b.json["nodes"][0]["mesh"];
+  b.json["scenes"][0]["nodes"] = Json::array();
+  b.addNode({{"name", "hall"}, {"children", {0, 2}}, {"extras", {{"obscura_ambient", {1, 2, 3}}, {"other", "x"}}}});  // 1
+  b.json["nodes"].push_back({{"name", "niche"}, {"mesh", mesh}, {"extras", {{"obscura_ambient", {0, 0.5, 0}}}}});      // 2
+  b.addNode({{"name", "yard"}, {"mesh", mesh}, {"extras", "anything"}});                                               // 3
+  const Scene scene = load(b);
+  REQUIRE(scene.instances.size() == 3);
+  CHECK(scene.instances[0].ambient == glm::vec3(1, 2, 3));
+  CHECK(scene.instances[1].ambient == glm::vec3(0, 0.5f, 0));
+  CHECK_FALSE(scene.instances[2].ambient.has_value());
+
+  LoadOptions options;
+  options.ambient = {{"hall", glm::vec3(7)}, {"yard", glm::vec3(8)}};
+  const Scene given = load(b, options);
+  CHECK(given.instances[0].ambient == glm::vec3(7));
+  CHECK(given.instances[1].ambient == glm::vec3(0, 0.5f, 0));
+  CHECK(given.instances[2].ambient == glm::vec3(8));
+
+  options.ambient = {{"attic", glm::vec3(1)}};
+  const TemporaryFolder folder;
+  const auto missing = sceneFromGltf(b.writeGlb(folder), options);
+  REQUIRE_FALSE(missing.ok());
+  CHECK(missing.error().code == obscura::engine::ErrorCode::Usage);
+  CHECK(missing.error().text().find("attic") != std::string::npos);
+}
+
+TEST_CASE("gltf nodes: an ambient light that is no colour is an error at its place") {
+  for (const Json& wrong : {Json({1, 2}), Json({1, 2, 3, 4}), Json("white"), Json({1, "2", 3}), Json({1, -1, 3}), Json({1, 1e31, 3}),
+                            Json({1, nullptr, 3}), Json(0.5)}) {
+    GltfBuilder b;
+    b.addTriangle();
+    b.json["nodes"][0]["extras"] = {{"obscura_ambient", wrong}};
+    INFO(wrong.dump());
+    CHECK(pathOfError(b).find("/nodes/0/extras/obscura_ambient") == 0);
+  }
+}

@@ -13,6 +13,7 @@ struct PostFrame {
   raster::GBuffer g;
   post::DepthBounds bounds;
   post::TransferStatistics statistics;
+  post::LinearColor radiance;  // where the settings ask for that W: emission and ambient light reflected once
   post::TransferInput in;
   post::TransferSums sums;
   post::Transfer transfer;
@@ -24,29 +25,39 @@ inline post::TransferInput transferInput(const raster::GBuffer& g, const raster:
   return {&g, post::makeProjector(camera, g.width, g.height), settings, post::transferSamples(settings)};
 }
 
-// The passes on frame.g; `target` empty: by the scalar twins. skip: what is known to be open is not sampled.
+// The passes on frame.g; `target` empty: by the scalar twins. skip: what is known to be open is not sampled. With stored
+// radiance transfer.w is made of the bounced light.
 inline void runPost(PostFrame& f, const raster::Camera& camera, const post::AmbientSettings& settings,
                     std::optional<raster::Target> target, post::Occlusion occlusion = post::Occlusion::Transfer,
-                    bool skip = true) {
+                    bool skip = true, const post::AmbientLight& ambient = glm::vec3(0.9f, 1, 1.3f)) {
   const int h = f.g.height;
+  const bool stored = settings.albedo == post::TransferAlbedo::Radiance;
   const post::DisplayTable table;
   f.in = transferInput(f.g, camera, settings);
+  if (stored) {
+    f.radiance = post::makeLinearColor(f.g.width, h);
+    const post::LightInput first{&f.g, nullptr, post::Occlusion::None, ambient, glm::vec3(0)};
+    target ? post::light(first, 0, h, f.radiance, *target) : post::lightRef(first, 0, h, f.radiance);
+    f.in.radiance = &f.radiance;
+  }
   f.sums = post::makeTransferSums(f.in);
-  f.transfer = post::makeTransfer(f.g.width, h, true, true);
+  f.transfer = post::makeTransfer(f.g.width, h, {true, true, stored});
   f.color = post::makeLinearColor(f.g.width, h);
   f.display = post::makeDisplayImage(f.g.width, h);
-  const post::LightInput light{&f.g, &f.transfer, occlusion, glm::vec3(0.9f, 1, 1.3f), glm::vec3(0.1f, 0.2f, 0.3f)};
+  const post::LightInput light{&f.g, &f.transfer, occlusion, ambient, glm::vec3(0.1f, 0.2f, 0.3f)};
   if (target) {
     f.bounds = post::makeDepthBounds(f.g.width, h);
     post::boundDepth(f.g, f.in.projector, 0, f.bounds.c.height(), f.bounds, *target);
     if (skip) f.in.bounds = &f.bounds;
     f.statistics = post::ambientTransfer(f.in, 0, h, f.sums, *target);
     post::depthFilter(f.in, f.sums, 0, h, f.transfer, *target);
+    if (stored) post::transferOfBounced(light, 0, h, f.transfer.w, *target);
     post::light(light, 0, h, f.color, *target);
     post::display(f.color, table, 0, h, f.display, *target);
   } else {
     post::ambientTransferRef(f.in, 0, h, f.sums);
     post::depthFilterRef(f.in, f.sums, 0, h, f.transfer);
+    if (stored) post::transferOfBouncedRef(light, 0, h, f.transfer.w);
     post::lightRef(light, 0, h, f.color);
     post::displayRef(f.color, table, 0, h, f.display);
   }
@@ -65,6 +76,7 @@ inline std::string firstDifference(const PostFrame& a, const PostFrame& b) {
   for (int c = 0; c < 3 && d.empty(); ++c) {
     d = firstDifference("denominator", a.sums.denominator[c], b.sums.denominator[c]);
     if (d.empty()) d = firstDifference("transfer", a.transfer.w[c], b.transfer.w[c]);
+    if (d.empty()) d = firstDifference("bounced", a.transfer.bounced[c], b.transfer.bounced[c]);
     if (d.empty()) d = firstDifference("color", a.color.rgb[c], b.color.rgb[c]);
   }
   return d.empty() ? firstDifference("display", a.display.rgba, b.display.rgba) : d;

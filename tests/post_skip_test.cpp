@@ -46,13 +46,13 @@ TestScene groundScene(uint32_t seed, int boxes, bool orthographic) {
 AmbientSettings settingsOf(uint32_t seed) {
   Random random(seed + 900);
   AmbientSettings s;
-  s.albedo = seed % 3 == 1 ? post::TransferAlbedo::Own : post::TransferAlbedo::Neighbour;
+  s.albedo = post::TransferAlbedo(seed % 3);
   s.membership = post::Membership(seed % 4);
   s.samples = random.integer(1, 16);
   s.steps = seed % 5 == 0 ? random.integer(2, 4) : 1;
   s.radius = random.real(0.1f, 0.8f);
   s.bias = seed % 4 == 3 ? 0 : s.radius * random.real(0, 0.02f);
-  s.silhouetteBound = seed % 3 != 0;
+  s.silhouetteBound = seed % 8 < 5;
   s.filter = seed % 7 != 0;
   s.interleave = seed % 6 != 0;
   s.estimator = seed % 4 == 2 ? post::Estimator(1 + seed / 4 % 2) : post::Estimator::Paper;

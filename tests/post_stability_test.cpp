@@ -2,6 +2,7 @@
 // skipped or not, as by the twins.
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -17,6 +18,7 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity(), kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr float kOdd[] = {kNaN, kInfinity, -kInfinity, 3e38f, -3e38f, 1e-40f, -0.f, -1, 0};
+const glm::vec3 kAmbient(0.9f, 1, 1.3f);
 const glm::vec3 kSideways(0, 1, 0.01f);  // N x this has no direction where N is parallel; in the papers' space
 
 // A wall before the eye; `change` may spoil any pixel.
@@ -46,27 +48,37 @@ raster::Camera wallCamera(bool orthographic) {
   return orthographic ? raster::orthographic(2, 1, 0.1, 50) : raster::perspective(1, 2, 0.1);
 }
 
-// Empty if all values are from 0 to 1.
-std::string firstUnsound(const raster::Plane<float>& plane) {
+// Empty if all values are from 0 to `most`.
+std::string firstUnsound(const raster::Plane<float>& plane, float most) {
   for (int y = 0; y < plane.height(); ++y)
     for (int x = 0; x < plane.width(); ++x)
-      if (const float v = plane.at(x, y); !(v >= 0 && v <= 1))
+      if (const float v = plane.at(x, y); !(v >= 0 && v <= most))
         return std::to_string(v) + " at " + std::to_string(x) + ", " + std::to_string(y);
   return "";
+}
+
+// Of W of stored radiance: the larger of 1 and L / La, and what some hundred roundings add.
+float boundOf(const PostFrame& f, int channel) {
+  const raster::Plane<float>& radiance = f.radiance.rgb[channel];
+  float most = 1;
+  for (int y = 0; y < radiance.height(); ++y)
+    for (int x = 0; x < radiance.width(); ++x) most = std::max(most, radiance.at(x, y) / kAmbient[channel]);
+  return std::min(most * 1.00001f, std::numeric_limits<float>::max());
 }
 
 // O and W by the twins, after all targets were found to give the same.
 post::Transfer sound(const raster::GBuffer& g, const raster::Camera& camera, const AmbientSettings& settings) {
   PostFrame expected;
   expected.g = copyOf(g);
-  runPost(expected, camera, settings, std::nullopt);
-  REQUIRE(firstUnsound(expected.transfer.obscurance) == "");
-  for (const raster::Plane<float>& w : expected.transfer.w) REQUIRE(firstUnsound(w) == "");
+  runPost(expected, camera, settings, std::nullopt, post::Occlusion::Transfer, true, kAmbient);
+  REQUIRE(firstUnsound(expected.transfer.obscurance, 1) == "");
+  for (int c = 0; c < 3; ++c)
+    REQUIRE(firstUnsound(expected.transfer.w[c], settings.albedo == TransferAlbedo::Radiance ? boundOf(expected, c) : 1) == "");
   for (raster::Target target : raster::supportedTargets())
     for (bool skip : {true, false}) {
       PostFrame found;
       found.g = copyOf(g);
-      runPost(found, camera, settings, target, post::Occlusion::Transfer, skip);
+      runPost(found, camera, settings, target, post::Occlusion::Transfer, skip, kAmbient);
       INFO("target " << raster::targetName(target) << " skip " << skip);
       REQUIRE(firstDifference("obscurance", found.transfer.obscurance, expected.transfer.obscurance) == "");
       for (int c = 0; c < 3; ++c) REQUIRE(firstDifference("transfer", found.transfer.w[c], expected.transfer.w[c]) == "");
@@ -77,7 +89,7 @@ post::Transfer sound(const raster::GBuffer& g, const raster::Camera& camera, con
 // With every W.
 template <class Check>
 void soundAlways(const raster::GBuffer& g, const raster::Camera& camera, AmbientSettings settings, const Check& check) {
-  for (auto albedo : {TransferAlbedo::Own, TransferAlbedo::Neighbour}) {
+  for (auto albedo : {TransferAlbedo::Own, TransferAlbedo::Neighbour, TransferAlbedo::Radiance}) {
     settings.albedo = albedo;
     check(sound(g, camera, settings));
   }
@@ -114,7 +126,7 @@ TEST_CASE("stability: albedo 0 leaves O, albedo 1 leaves 1 of W, as near as floa
     }
 }
 
-TEST_CASE("stability: where all samples are inside, W is 0, and 1 if nothing is absorbed either") {
+TEST_CASE("stability: where all samples are inside, W is 0, or 1 if nothing is absorbed, and of radiance what the wall reflects") {
   for (bool orthographic : {false, true})
     for (int samples : {1, 8, 64})
       for (float albedo : {0.f, 0.5f, 1.f}) {
@@ -128,7 +140,9 @@ TEST_CASE("stability: where all samples are inside, W is 0, and 1 if nothing is 
         s.bias = 0;
         soundAlways(g, wallCamera(orthographic), s, [&](const post::Transfer& t) {
           REQUIRE(t.obscurance.at(18, 5) == 0);
-          REQUIRE(t.w[1].at(18, 5) == (albedo == 1 ? 1 : 0));
+          const float w = t.w[1].at(18, 5);
+          if (t.bounced[1].empty()) REQUIRE(w == (albedo == 1 ? 1 : 0));
+          else REQUIRE(w == albedo);  // what the wall reflects of the light that would come first
         });
       }
 }

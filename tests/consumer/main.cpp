@@ -35,7 +35,7 @@ int main() {
   const post::TransferInput in{&g, post::makeProjector(camera, width, height), s, post::transferSamples(s)};
   post::TransferSums sums = post::makeTransferSums(in);
   post::ambientTransfer(in, 0, height, sums, target);
-  post::Transfer w = post::makeTransfer(width, height, false, true);
+  post::Transfer w = post::makeTransfer(width, height, {false, true});
   post::depthFilter(in, sums, 0, height, w, target);
   post::LinearColor color = post::makeLinearColor(width, height);  // light from all around, and the sky behind
   post::light({&g, &w, post::Occlusion::Transfer, glm::vec3(1.5f), {0.3f, 0.5f, 0.9f}}, 0, height, color, target);

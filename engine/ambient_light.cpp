@@ -1,0 +1,48 @@
+#include "obscura/engine/ambient_light.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include <glm/geometric.hpp>
+
+namespace obscura::engine {
+namespace {
+
+// A direction of the world, as the G-buffer's normals are turned.
+glm::vec3 inView(const glm::dmat4& viewFromWorld, const glm::dvec3& direction) {
+  const glm::dvec3 turned = glm::dmat3(viewFromWorld) * direction;
+  const double length = glm::length(turned);  // 1 unless the view scales
+  return length > 0 ? glm::vec3(turned / length) : glm::vec3(0);
+}
+
+}  // namespace
+
+bool hasAmbientGroups(const Scene& scene) {
+  return std::any_of(scene.instances.begin(), scene.instances.end(), [](const Instance& i) { return i.ambient.has_value(); });
+}
+
+post::AmbientLight ambientLightOf(const Scene& scene, const FrameSettings& settings, std::vector<glm::vec3>& table) {
+  post::AmbientLight light(settings.ambientLight);
+  table.clear();
+  if (hasAmbientGroups(scene)) {
+    for (const Instance& i : scene.instances) {
+      const glm::vec3 color = i.ambient.value_or(settings.ambientLight);
+      for (int c = 0; c < 3; ++c)
+        if (!(color[c] >= 0 && color[c] < 1e30f))
+          throw std::invalid_argument("the ambient light of instance " + std::to_string(table.size()) + " is " +
+                                      std::to_string(color[c]) + ": it must be 0 or more and finite");
+      table.push_back(color);
+    }
+    light.instances = table;
+  }
+  if (settings.ambientDirections)
+    for (int k = 0; k < 6; ++k) {
+      glm::dvec3 axis(0);
+      axis[k / 2] = k % 2 ? -1 : 1;
+      light.directions.push_back({inView(settings.camera.viewFromWorld, axis), (*settings.ambientDirections)[size_t(k)]});
+    }
+  return light;
+}
+
+}  // namespace obscura::engine

@@ -1,0 +1,18 @@
+// In: a scene and a frame's settings.  Out: the ambient light La(x) as the post process takes it.
+#pragma once
+
+#include <vector>
+
+#include "obscura/engine/frame.h"
+#include "obscura/post/ambient_light.h"
+
+namespace obscura::engine {
+
+// Some instance has an ambient light of its own.
+bool hasAmbientGroups(const Scene& scene);
+
+// The table that the result may point to is kept in `table`. Throws std::invalid_argument if an instance's light is below 0
+// or not finite.
+post::AmbientLight ambientLightOf(const Scene& scene, const FrameSettings& settings, std::vector<glm::vec3>& table);
+
+}  // namespace obscura::engine

@@ -1,0 +1,37 @@
+// The ambient light La(x): the same everywhere, of the group of things that x belongs to, or by the direction of its
+// normal (both papers: it "may slowly change", as from room to room).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "obscura/raster/span.h"
+
+namespace obscura::post {
+
+// Light from around a direction f, as the classes of Castro, Neumann and Sbert's "Extended Ambient Term".
+struct AmbientDirection {
+  glm::vec3 direction{0, 0, 1};  // unit; in the space of the G-buffer's normals: x right, y up, z towards the eye
+  glm::vec3 color{1};            // linear, >= 0 and finite
+};
+
+// La(instance, n) = L(instance) D(n), per channel:
+//   L  instances[id] for the ids that it has, else color
+//   D  sum_k w_k color_k / sum_k w_k with w_k = max(0, n . f_k); 1 without directions. Where the sum of the weights is not
+//      in (0, 1e8), as of a normal that is zero or no number, the mean of the colours.
+// Whatever the normals hold, D is not above the largest colour but for roundings.
+struct AmbientLight {
+  glm::vec3 color{1};                       // linear, >= 0 and finite
+  raster::Span<const glm::vec3> instances;  // by the G-buffer's instance ids, alike; at most 2^29
+  std::vector<AmbientDirection> directions;
+
+  AmbientLight(const glm::vec3& everywhere = glm::vec3(1)) : color(everywhere) {}
+
+  // Planes of the G-buffer that La is read from.
+  bool needsInstance() const { return !instances.empty(); }
+  bool needsNormal() const { return !directions.empty(); }
+};
+
+}  // namespace obscura::post
