@@ -280,8 +280,8 @@ void addView(CLI::App& app, FrameOptions& o) {
       ->type_name("INDEX")
       ->group("View");
   addColor(app, "--background", o.background, "colour where nothing is seen");
-  addLength(app, "--separation", false, o.separation, "how far behind what is seen the AOV depth2 begins",
-            shown(engine::kDefaultSeparation) + " x R")->group("View");
+  addLength(app, "--separation", false, o.separation, "how far behind what is seen the AOV depth2 and the second layer begin",
+            shown(engine::kDefaultSeparation) + " x R, with --layers 2 " + shown(engine::kLayerSeparation) + " x R")->group("View");
   addColor(app, "--ambient-light", o.ambientLight, "the light that comes from everywhere");
   addAmbientVariants(app, o);
 }
@@ -320,6 +320,9 @@ void addAmbient(CLI::App& app, FrameOptions& o) {
   addChoice(app, "--estimator", kEstimatorNames, o.transfer.estimator,
             "where the rays come from: one set for all pixels, a Sobol net dealt to a 4x4 pattern, or one that suits its box; "
             "or rays through the eye, tested all along (linear membership)")
+      ->group(group);
+  addChoice(app, "--layers", {{"1", 1}, {"2", 2}}, o.transfer.layers,
+            "of depth that occlude: what is seen, or also what is next behind it")
       ->group(group);
   addChoice(app, "--interleave", onOff, o.transfer.interleave, "other rays in each pixel of a 4x4 pattern")
       ->group(group);
@@ -389,7 +392,7 @@ engine::Result<ResolvedFrame> FrameOptions::resolve(const engine::Scene& in) con
   out.frame.transfer.radius = float(r);
   out.frame.transfer.bias = float(bias.value_or(engine::kDefaultBias * r));
   out.frame.transfer.filterThreshold = float(filterThreshold.value_or(engine::kDefaultFilterThreshold * r));
-  out.frame.separation = float(separation.value_or(engine::kDefaultSeparation * r));
+  out.frame.separation = float(separation.value_or((transfer.layers == 2 ? engine::kLayerSeparation : engine::kDefaultSeparation) * r));
   out.raster = raster;
   out.reference = reference;
   return out;

@@ -27,5 +27,6 @@ constexpr double kDefaultRadius = 0.04;           // R, of the scene's size
 constexpr double kDefaultBias = 0.01;             // of R
 constexpr double kDefaultFilterThreshold = 0.2;   // of R
 constexpr double kDefaultSeparation = 0.1;        // of R
+constexpr double kLayerSeparation = 1;            // of R, if the containment test reads the second layer
 
 }  // namespace obscura::engine

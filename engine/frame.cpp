@@ -55,7 +55,7 @@ Needs needsOf(const Scene& scene, const FrameSettings& s) {
   n.planes.triangle = wants(Aov::Triangle);
   n.planes.instance = wants(Aov::Instance) || (lights && hasAmbientGroups(scene));
   n.planes.material = wants(Aov::Material);
-  n.planes.depth2 = wants(Aov::Depth2);
+  n.planes.depth2 = wants(Aov::Depth2) || (n.sums && s.transfer.layers == 2);
   n.planes.depthBack = wants(Aov::DepthBack);
   n.planes.separation = s.separation;
   return n;
@@ -71,7 +71,8 @@ const char* wrongSetting(const FrameSettings& s) {
   if (t.steps < 1 || t.steps > 4) return "steps must be 1 to 4";
   if (!(t.radius > 0 && t.radius < 1e30f)) return "the radius must be positive and finite";
   if (!(t.bias >= 0 && t.bias < 1e30f)) return "the bias must be 0 or more and finite";
-  if (wants(s, Aov::Depth2) && !(s.separation > 0 && s.separation < 1e30f)) return "the separation must be positive and finite";
+  if (t.layers < 1 || t.layers > 2) return "layers must be 1 or 2";
+  if ((wants(s, Aov::Depth2) || t.layers == 2) && !(s.separation > 0 && s.separation < 1e30f)) return "the separation must be positive and finite";
   if (t.estimator == post::Estimator::Lines && t.membership != post::Membership::Linear)
     return "line samples have the linear membership: choose that, or another estimator";
   if (!(t.filterThreshold > 0)) return "the filter threshold must be positive";

@@ -281,6 +281,8 @@ void checkRadiance(const TransferInput& in) {
 
 TransferSums makeTransferSums(const TransferInput& in, TransferSums used) {
   if (in.settings.albedo == TransferAlbedo::Radiance) checkRadiance(in);
+  if (in.settings.layers == 2 && in.g->depth2.empty())
+    throw std::invalid_argument("two layers of depth are asked for, but the G-buffer has no depth2");
   const bool denominators = in.settings.albedo != TransferAlbedo::Own;
   used.numerator.resize(in.g->width, in.g->height);
   used.open.resize((in.g->width + 15) / 16, in.g->height);

@@ -34,6 +34,10 @@ struct TransferStatistics {
   void add(const TransferStatistics& o) { empty += o.empty, open += o.open, sampled += o.sampled; }
 };
 
+// How far behind the second layer (AmbientSettings::layers) is inside, of R. All of R would be too much: where a closed
+// mesh is double-sided, its far wall is a second layer, and behind it is outside.
+constexpr float kHiddenThickness = 0.5f;
+
 struct TransferInput {
   const raster::GBuffer* g = nullptr;
   Projector projector;
@@ -46,8 +50,9 @@ struct TransferInput {
   const LinearColor* radiance = nullptr;
 };
 
-// Allocates what the settings need; std::invalid_argument if the radiance is needed and is not there or of another size. `used`, here and in the other make functions of the post process: planes of an earlier
-// frame, which serve again where they have the right size.
+// Allocates what the settings need; std::invalid_argument if the radiance is needed and is not there or of another size,
+// or if two layers are asked for and the G-buffer has one. `used`, here and in the other make functions of the post
+// process: planes of an earlier frame, which serve again where they have the right size.
 TransferSums makeTransferSums(const TransferInput& in, TransferSums used = {});
 
 // Rows y0 ... y1 - 1 of `out`; reads the depth map everywhere.

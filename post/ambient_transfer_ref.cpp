@@ -52,7 +52,12 @@ void shade(const TransferInput& in, int x, int y, TransferSums& out) {
       occluder = project(projector, scPos);
       const float behind = scPos.z - g.depth.at(occluder.x, occluder.y);
       const float deepest = s.silhouetteBound ? s.radius : std::numeric_limits<float>::infinity();
-      outer = !(behind > s.bias && behind < deepest && scPos.z > projector.zNear);
+      bool within = behind < deepest;
+      if (s.layers == 2) {
+        const float behind2 = scPos.z - g.depth2.at(occluder.x, occluder.y);
+        within = within || (behind2 > s.bias && behind2 < kHiddenThickness * s.radius);
+      }
+      outer = !(behind > s.bias && within && scPos.z > projector.zNear);
     }
     if (outer) num += 1;
     else

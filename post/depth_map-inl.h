@@ -17,8 +17,8 @@ namespace HWY_NAMESPACE {
 
 template <bool kPerspective>
 struct DepthMap {
-  const float* depth;
-  VF xScale, yScale, xCenter, yCenter, firstX, firstY, lastX, lastY, bias, deepest, zNear;
+  const float *depth, *depth2;  // depth2: null unless two layers are known
+  VF xScale, yScale, xCenter, yCenter, firstX, firstY, lastX, lastY, bias, deepest, deepest2, zNear;
   VI stride, origin;  // origin: element of the image's pixel (0, 0), were it in the G-buffer, times -1
   bool negative;      // the G-buffer reaches beyond the image's upper or left edge
 
@@ -26,6 +26,8 @@ struct DepthMap {
     const DF d;
     const Projector& p = in.projector;
     depth = in.g->depth.data();
+    depth2 = in.settings.layers == 2 ? in.g->depth2.data() : nullptr;
+    deepest2 = hn::Set(d, kHiddenThickness * in.settings.radius);
     xScale = hn::Set(d, p.xScale), yScale = hn::Set(d, p.yScale);
     xCenter = hn::Set(d, p.xCenter), yCenter = hn::Set(d, p.yCenter);
     firstX = hn::Set(d, float(p.xFirst)), firstY = hn::Set(d, float(p.yFirst));
@@ -57,10 +59,15 @@ struct DepthMap {
   }
 
   // Inner exactly when bias < z - z* < R; the upper bound keeps far foreground objects from casting silhouettes. Without
-  // it the difference need only be finite.
+  // it the difference need only be finite. Behind the second layer the same, to kHiddenThickness R.
   HWY_INLINE MF inner(VF z, VI texel) const {
     const VF behind = hn::Sub(z, hn::GatherIndex(DF(), depth, texel));
-    return hn::And(hn::And(hn::Gt(behind, bias), hn::Lt(behind, deepest)), hn::Gt(z, zNear));
+    MF within = hn::Lt(behind, deepest);
+    if (HWY_UNLIKELY(depth2 != nullptr)) {
+      const VF behind2 = hn::Sub(z, hn::GatherIndex(DF(), depth2, texel));
+      within = hn::Or(within, hn::And(hn::Gt(behind2, bias), hn::Lt(behind2, deepest2)));
+    }
+    return hn::And(hn::And(hn::Gt(behind, bias), within), hn::Gt(z, zNear));
   }
 
  private:

@@ -147,20 +147,34 @@ class LineKernel {
     s.total = hn::Add(s.total, hn::IfThenElseZero(counts, whole));
 
     const VI texel = map_.texelAt(u, v);
-    const VF stored = hn::GatherIndex(d, map_.depth, texel);
     const auto reached = [&](VF depth) HWY_ATTR { return hn::Mul(hn::Sub(depth, start.z), inverseRadius_); };
-    const VF begin = reached(hn::Add(stored, map_.bias)), end = reached(hn::Add(stored, map_.deepest));
-    const VF from = larger(reached(map_.zNear), larger(begin, low)), to = smaller(end, high);
-    const MF hit = hn::And(hn::And(counts, hn::Lt(from, to)), hn::And(hn::Lt(begin, high), hn::Gt(end, low)));
-    if (hn::AllFalse(d, hit)) return;
-    const VF atFrom = hn::IfThenElse(hn::Eq(from, low), atLow, line.upTo(from));
-    const MF endsHigh = hn::Eq(to, high);  // nearly always
-    const VF atTo = hn::AllTrue(d, endsHigh) ? atHigh : hn::IfThenElse(endsHigh, atHigh, line.upTo(to));
-    const VF inner = larger(smaller(hn::Mul(hn::Sub(atTo, atFrom), weight), whole), zero);
-    s.inner = hn::Add(s.inner, hn::IfThenElseZero(hit, inner));
+    VF from = larger(reached(map_.zNear), low), inner = zero;
+    MF any = hn::MaskFromVec(zero);
+    // What is inside between two depths, and not before `from`, where the part of the layer before it ends.
+    const auto addInside = [&](VF first, VF last) HWY_ATTR {
+      const VF begin = reached(first), end = reached(last), since = larger(begin, from), to = smaller(end, high);
+      const MF hit = hn::And(hn::And(counts, hn::Lt(since, to)), hn::And(hn::Lt(begin, high), hn::Gt(end, low)));
+      if (hn::AllFalse(d, hit)) return;
+      const VF atSince = hn::IfThenElse(hn::Eq(since, low), atLow, line.upTo(since));
+      const MF endsHigh = hn::Eq(to, high);  // nearly always
+      const VF atTo = hn::AllTrue(d, endsHigh) ? atHigh : hn::IfThenElse(endsHigh, atHigh, line.upTo(to));
+      const VF part = larger(smaller(hn::Mul(hn::Sub(atTo, atSince), weight), whole), zero);
+      inner = hn::Add(inner, hn::IfThenElseZero(hit, part));
+      from = hn::IfThenElse(hit, to, from);
+      any = hn::Or(any, hit);
+    };
+    const VF stored = hn::GatherIndex(d, map_.depth, texel);
+    addInside(hn::Add(stored, map_.bias), hn::Add(stored, map_.deepest));
+    if (HWY_UNLIKELY(map_.depth2 != nullptr)) {
+      const VF hidden = larger(hn::GatherIndex(d, map_.depth2, texel), stored);
+      addInside(hn::Add(hidden, map_.bias), hn::Add(hidden, map_.deepest2));
+    }
+    if (hn::AllFalse(d, any)) return;
+    inner = smaller(inner, whole);
+    s.inner = hn::Add(s.inner, hn::IfThenElseZero(any, inner));
     for (int c = 0; kReads && c < 3; ++c) {
       const VF read = hn::Mul(inner, hn::GatherIndex(d, read_[c].data(), texel));
-      s.read[c] = hn::Add(s.read[c], hn::IfThenElseZero(hit, read));
+      s.read[c] = hn::Add(s.read[c], hn::IfThenElseZero(any, read));
     }
   }
 

@@ -19,6 +19,8 @@
 // The limits: Q = 1, and A + B t = 0 where N . (p - x) changes its sign. |x| is the same for all rays of a pixel and
 // left out, and so is that rays diverge, (1 + t R / z)^2.
 //
+// With two layers what lies behind the second counts, too, as far as the first has not claimed it.
+//
 // With total = sum of all integrals and inner = sum of what is inside of them, num = n - n inner / total: exactly n if
 // nothing is inside, 0 if all is. den = n - n sum(inner a) / total with a of the ray's texel; W follows as from rays.
 // Rays that leave before the near plane count for nothing; if none is left, the pixel is open. steps play no part, all

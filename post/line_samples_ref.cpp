@@ -52,16 +52,26 @@ void integrate(const TransferInput& in, int x, int y, TransferSums& out) {
     total += whole;
 
     const Texel texel = project(p, start);
-    const float stored = gbuffer.depth.at(texel.x, texel.y);
-    const float begin = (stored + s.bias - start.z) * toR, near = (p.zNear - start.z) * toR;
-    const float end = (stored + (s.silhouetteBound ? s.radius : std::numeric_limits<float>::infinity()) - start.z) * toR;
-    float from = begin > low ? begin : low;
-    if (near > from) from = near;
-    const float to = end < high ? end : high;
-    if (!(from < to && begin < high && end > low)) continue;
-    float inner = ((to == high ? atHigh : integral(to)) - (from == low ? atLow : integral(from))) * weight;
+    const float stored = gbuffer.depth.at(texel.x, texel.y), near = (p.zNear - start.z) * toR;
+    float from = near > low ? near : low, inner = 0;
+    bool any = false;
+    const auto addInside = [&](float first, float last) {
+      const float begin = (first - start.z) * toR, end = (last - start.z) * toR;
+      const float since = begin > from ? begin : from, to = end < high ? end : high;
+      if (!(since < to && begin < high && end > low)) return;
+      float part = ((to == high ? atHigh : integral(to)) - (since == low ? atLow : integral(since))) * weight;
+      if (!(part < whole)) part = whole;
+      if (part > 0) inner += part;
+      from = to;
+      any = true;
+    };
+    addInside(stored + s.bias, stored + (s.silhouetteBound ? s.radius : std::numeric_limits<float>::infinity()));
+    if (s.layers == 2) {
+      const float second = gbuffer.depth2.at(texel.x, texel.y), hidden = second > stored ? second : stored;
+      addInside(hidden + s.bias, hidden + kHiddenThickness * s.radius);
+    }
+    if (!any) continue;
     if (!(inner < whole)) inner = whole;
-    if (!(inner > 0)) inner = 0;
     innerSum += inner;
     for (int channel = 0; channel < 3 && reads; ++channel) {
       const raster::Plane<float>& read = s.albedo == TransferAlbedo::Radiance ? in.radiance->rgb[channel] : gbuffer.albedo[channel];

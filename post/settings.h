@@ -44,6 +44,7 @@ struct AmbientSettings {
   float radius = 0.5f;           // R, scene units, > 0
   float bias = 0.005f;           // scene units, >= 0: how far behind the depth map a point must be to be inside
   bool silhouetteBound = true;   // what lies R or more behind the depth map is outside: no false silhouettes; false: inside
+  int layers = 1;                // of depth that the containment test knows, 1 or 2; 2: GBuffer::depth2, best R apart
   bool interleave = true;        // other rays in each pixel of a 4x4 pattern
   bool filter = true;            // 4x4 box over pixels that have much in common
   FilterGuide filterGuide = FilterGuide::Depth;

@@ -154,6 +154,8 @@ TEST_CASE("golden: threads, targets, tile sizes, skipping and the scalar twins g
                                          std::pair(post::Estimator::Lines, post::FilterGuide::Plane)}) {
     settings.transfer.estimator = estimator;
     settings.transfer.filterGuide = guide;
+    settings.transfer.layers = estimator == post::Estimator::Sobol ? 1 : 2;
+    settings.separation = 0.8f;
     expected = digests({}, true);
     for (raster::Target target : raster::supportedTargets())
       for (int count : {1, 3, 8}) {

@@ -66,7 +66,7 @@ inline void runPost(PostFrame& f, const raster::Camera& camera, const post::Ambi
 inline raster::GBuffer gbufferOf(const TestScene& s) {
   raster::Rasterizer rasterizer;
   raster::GBuffer g;
-  rasterizer.render(s.list(), s.camera, s.width, s.height, kAllPlanes, g);
+  rasterizer.render(s.list(), s.camera, s.width, s.height, kAllLayers, g);
   return g;
 }
 

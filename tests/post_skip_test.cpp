@@ -55,6 +55,7 @@ AmbientSettings settingsOf(uint32_t seed) {
   s.silhouetteBound = seed % 8 < 5;
   s.filter = seed % 7 != 0;
   s.interleave = seed % 6 != 0;
+  s.layers = seed % 4 == 1 ? 2 : 1;
   s.estimator = seed % 4 == 2 ? post::Estimator(1 + seed / 4 % 2) : post::Estimator::Paper;
   s.filterThreshold = s.radius / 5;
   return s;

@@ -24,6 +24,7 @@ AmbientSettings settingsOf(uint32_t seed) {
   s.interleave = seed % 3 != 0;
   s.filter = seed % 7 != 0;
   s.estimator = post::Estimator(seed / 2 % 4);
+  s.layers = seed % 3 == 2 ? 2 : 1;
   s.filterGuide = seed / 3 % 2 ? post::FilterGuide::Plane : post::FilterGuide::Depth;
   s.filterThreshold = random.real(0.05f, 0.5f);
   return s;
@@ -33,11 +34,12 @@ raster::GBuffer hostileGBuffer(uint32_t seed) {
   Random random(seed);
   const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
   const float odd[] = {0, -0.f, inf, -inf, nan, 1e30f, 1e-40f, -1, 3e38f};
-  raster::GBuffer g(random.integer(1, 70), random.integer(1, 30), kAllPlanes);
+  raster::GBuffer g(random.integer(1, 70), random.integer(1, 30), kAllLayers);
   for (int y = 0; y < g.height; ++y)
     for (int x = 0; x < g.width; ++x) {
       auto value = [&](float lo, float hi) { return random.integer(0, 9) ? random.real(lo, hi) : odd[random.integer(0, 8)]; };
       g.depth.at(x, y) = random.integer(0, 3) ? value(1, 3) : inf;
+      g.depth2.at(x, y) = random.integer(0, 3) ? value(1, 4) : inf;
       for (int c = 0; c < 3; ++c) {
         g.normal[c].at(x, y) = value(-1, 1);
         g.albedo[c].at(x, y) = random.real(0, 1);
@@ -114,6 +116,7 @@ TEST_CASE("post: a twin that computes anything else is noticed") {
     return noticed(m);
   };
   CHECK(with([](AmbientSettings& m) { m.steps = 2; }));
+  CHECK(with([](AmbientSettings& m) { m.layers = 2; }));
   CHECK(with([](AmbientSettings& m) { m.bias = 0.02f; }));
   CHECK(with([](AmbientSettings& m) { m.silhouetteBound = false; }));
   CHECK(with([](AmbientSettings& m) { m.interleave = false; }));
