@@ -92,7 +92,13 @@ void checkArguments(const DrawList& list, const Camera& c, int width, int height
     last = i.mesh;
     triangles += i.mesh->triangleCount();
   }
-  if (triangles >= kNoTriangle) fail(triangles, " triangles: ids have 32 bits");
+  for (size_t k = 0; k < list.implicits.size(); ++k) {
+    const ImplicitSurface& s = list.implicits[k];
+    if (const char* wrong = wrongImplicit(s)) fail("implicit surface ", k, ": ", wrong);
+    if (s.material >= list.materials.size()) fail("implicit surface ", k, " has material ", s.material, " of ", list.materials.size());
+  }
+  triangles += list.implicits.size();
+  if (triangles >= kNoTriangle) fail(triangles, " triangles and implicit surfaces: ids have 32 bits");
 }
 
 }  // namespace obscura::raster

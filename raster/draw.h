@@ -5,6 +5,7 @@
 
 #include <glm/mat4x4.hpp>
 
+#include "obscura/raster/implicit_surface.h"
 #include "obscura/raster/material.h"
 #include "obscura/raster/mesh.h"
 #include "obscura/raster/span.h"
@@ -18,11 +19,13 @@ struct Instance {
 };
 
 // Triangle ids count through the instances in this order: the k-th triangle of instance i has the id
-// (triangles of the instances before i) + k. On equal depth the smaller id is seen.
+// (triangles of the instances before i) + k. On equal depth the smaller id is seen. Implicit surfaces go on counting: the
+// k-th has the id (all triangles) + k, and in the instance plane (all instances) + k.
 struct DrawList {
   Span<const Instance> instances;
   Span<const Material> materials;
   Span<const TextureView> textures;
+  Span<const ImplicitSurface> implicits = {};
 };
 
 constexpr uint32_t kNoTriangle = 0xFFFFFFFFu;  // in the id planes: nothing was drawn there

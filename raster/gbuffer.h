@@ -34,6 +34,7 @@ struct PlaneSet {
 //              alpha covers. The limit is the first layer's key itself: this is where the solid that is seen ends, as far
 //              as it is closed. Where the first layer is empty there is no limit: an eye inside a solid sees its wall.
 //              Double-sided triangles have no inside and do not count, though they can be the first layer.
+// Implicit surfaces take part as triangles would: where a ray enters one it faces the eye, where it leaves one it faces away.
 struct GBuffer {
   int width = 0, height = 0;
   Plane<float> depth;        // zView: distance along the view axis, scene units
@@ -42,7 +43,7 @@ struct GBuffer {
   Plane<float> emissive[3];  // linear, >= 0; the base colour where unlit
   Plane<float> position[3];  // camera space, scene units
   Plane<uint32_t> triangle;  // id, see DrawList
-  Plane<uint32_t> instance;  // index into DrawList::instances
+  Plane<uint32_t> instance;  // index into DrawList::instances, and beyond them into DrawList::implicits
   Plane<uint32_t> material;  // index into DrawList::materials
   Plane<float> depth2;       // zView of the nearest surface at least `separation` behind the first
   Plane<float> depthBack;    // zView of the nearest surface at or behind the first that is turned away

@@ -12,6 +12,7 @@
 #include "obscura/raster/cull.h"
 #include "obscura/raster/depth_layers.h"
 #include "obscura/raster/float_environment.h"
+#include "obscura/raster/implicit.h"
 #include "obscura/raster/occlusion.h"
 #include "obscura/raster/parallel.h"
 #include "obscura/raster/resolve.h"
@@ -78,6 +79,7 @@ struct Rasterizer::State {
   DrawRuns drawRuns;
   std::vector<std::unique_ptr<Worker>> workers;
   std::vector<Bins> bins, awayBins;  // one per worker, contiguous for the tiles
+  std::vector<ImplicitDraw> implicits;
   Statistics statistics;
   Timings timings;
   TileGrid grid;
@@ -189,31 +191,37 @@ void Rasterizer::State::drawLayer(const SurfaceContext& context, const TileBuffe
   const std::vector<Bins>& from = layer == LayerBehind::Back ? awayBins : bins;
   worker.behind.reserve(1, grid.tileBits);
   TileBuffers tile = placeTile(grid, index, worker.behind, 0);
-  const bool more = anyOf(from, index) || !settings.skip;
+  const bool traced = touchesImplicits(*context.view, implicits, tile, settings.skip);
+  const bool more = anyOf(from, index) || traced || !settings.skip;
   if (more) {
     worker.limit.resize(1 << (2 * grid.tileBits), 1);
     tile.limit = worker.limit.row(0);
     limitTile(*context.view, first, covered, layer, separation, tile, target);
     clearTile(Keep::KeyWithinLimit, tile, target);
     rasterTile(context, index, from, Keep::KeyWithinLimit, tile, target);
+    if (traced) drawImplicitsBehind(*context.view, implicits, tile, layer == LayerBehind::Back, settings.skip, target);
   }
   storeTileDepth(*context.view, tile, more, out, target);
 }
 
-// What the bins still hold, then the planes.
+// What the bins still hold, the planes, then what implicit surfaces show before them.
 void Rasterizer::State::finishTiles(const SurfaceContext& context, const PlaneSet& planes, GBuffer& out) {
   parallel.forRanges(size_t(grid.count()), 1, [&](size_t begin, size_t end, int index) {
     Worker& worker = *workers[size_t(index)];
     if (!rounds) worker.tile.reserve(1, grid.tileBits);
     for (size_t t = begin; t < end; ++t) {
       TileBuffers tile = rounds ? placeTile(grid, int(t), kept, t) : placeTile(grid, int(t), worker.tile, 0);
-      const bool holds = rounds && started[t], more = anyOf(bins, int(t)) || !settings.skip, covered = holds || more;
-      if (more && !holds) clearTile(keep, tile, target);
+      const bool holds = rounds && started[t], more = anyOf(bins, int(t)) || !settings.skip;
+      const bool traced = touchesImplicits(*context.view, implicits, tile, settings.skip);
+      bool covered = holds || more;
+      if ((more || traced) && !holds) clearTile(keep, tile, target);
       if (more) rasterTile(context, int(t), bins, keep, tile, target);
+      if (keep == Keep::Visibility) resolveTile(context, tile, covered, out, target);
+      if (traced) drawImplicits(*context.view, implicits, tile, settings.skip, out, target);
+      covered |= traced;
       ++worker.statistics.tiles;
       worker.statistics.tilesEmpty += !covered;
-      if (keep == Keep::Visibility) resolveTile(context, tile, covered, out, target);
-      else if (planes.depth) storeTileDepth(*context.view, tile, covered, out.depth, target);
+      if (keep != Keep::Visibility && planes.depth) storeTileDepth(*context.view, tile, covered, out.depth, target);
       if (planes.depth2) drawLayer(context, tile, covered, int(t), LayerBehind::Second, planes.separation, worker, out.depth2);
       if (planes.depthBack) drawLayer(context, tile, covered, int(t), LayerBehind::Back, 0, worker, out.depthBack);
     }
@@ -283,6 +291,7 @@ void Rasterizer::State::render(const DrawList& list, const View& view, const Cam
   std::map<const MeshView*, Clusters> made;
   clusterThoseWithout(draws, made);
   drawRuns.find(draws);
+  implicits = makeImplicitDraws(list, camera);
   const SurfaceContext context{&view, draws, &drawRuns, list.textures, srgb.linear};
   if (planes.depthBack) setupAway(view, awayDraws(draws));
   // What lies behind the first layer must not be hidden by it.

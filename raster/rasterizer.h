@@ -1,6 +1,7 @@
 // The rasterizer: draw list and camera in, G-buffer out.
 //
 //   draws -> candidates (cull, occlusion) -> transform -> setup (clip) -> bins -> tiles: visibility -> resolve -> G-buffer
+//   implicit surfaces -> tiles: traced into visibility and G-buffer
 //
 // and, where a scene has many layers, from the candidates to the tiles in rounds, front to back.
 //

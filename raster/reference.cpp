@@ -125,7 +125,8 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // `plane` begins empty and takes, per pixel, the depth of the largest key up to limit(key of the first layer).
 template <class Limit>
-void layerBehind(const SurfaceContext& context, const Visibility& first, bool back, const Limit& limit, Plane<float>& plane) {
+void layerBehind(const SurfaceContext& context, Span<const ImplicitDraw> implicits, const Visibility& first, bool back,
+                 const Limit& limit, Plane<float>& plane) {
   Plane<float> best(first.width, first.height);
   for (int y = 0; y < first.height; ++y) std::fill_n(best.row(y), first.width, -kInfinity);
   Fragments f;
@@ -133,6 +134,7 @@ void layerBehind(const SurfaceContext& context, const Visibility& first, bool ba
   f.wants = [&](int x, int y, float key, uint32_t) { return key > best.at(x, y) && key <= limit(first.key.at(x, y)); };
   f.take = [&](int x, int y, float key, uint32_t) { best.at(x, y) = key; };
   drawAll(context, f);
+  drawImplicitsBehind(*context.view, implicits, back, [&](int x, int y) { return limit(first.key.at(x, y)); }, best);
   for (int y = 0; y < first.height; ++y)
     for (int x = 0; x < first.width; ++x) {
       const float key = best.at(x, y);
@@ -164,17 +166,18 @@ Visibility visibility(const SurfaceContext& context) {
   return out;
 }
 
-void layersBehind(const SurfaceContext& context, const Visibility& first, float separation, GBuffer& out) {
+void layersBehind(const SurfaceContext& context, Span<const ImplicitDraw> implicits, const Visibility& first, float separation,
+                  GBuffer& out) {
   const bool perspective = context.view->perspective;
   if (!out.depth2.empty())
-    layerBehind(context, first, false, [&](float key) {
+    layerBehind(context, implicits, first, false, [&](float key) {
       if (key == -kInfinity) return -kInfinity;
       const float seen = perspective ? 1 / key : 0 - key;
       const float behind = std::max(seen + separation, seen * (1 + 1 / 1048576.0f));
       return perspective ? 1 / behind : 0 - behind;
     }, out.depth2);
   if (!out.depthBack.empty())
-    layerBehind(context, first, true, [](float key) { return key == -kInfinity ? kInfinity : key; }, out.depthBack);
+    layerBehind(context, implicits, first, true, [](float key) { return key == -kInfinity ? kInfinity : key; }, out.depthBack);
 }
 
 }  // namespace ref
@@ -188,11 +191,13 @@ void renderReference(const DrawList& list, const Camera& camera, int width, int 
   const View view = makeView(camera, width, height, window);
   const std::vector<Draw> draws = makeDraws(list, camera);
   const SurfaceContext context{&view, draws, nullptr, list.textures, srgb.linear};
-  const ref::Visibility visibility = ref::visibility(context);
+  const std::vector<ImplicitDraw> implicits = makeImplicitDraws(list, camera);
+  ref::Visibility visibility = ref::visibility(context);
   out = GBuffer(view.width, view.height, planes);
   for (int y = 0; y < view.height; ++y)
     for (int x = 0; x < view.width; ++x) ref::resolvePixel(context, visibility.triangle.at(x, y), visibility.key.at(x, y), x, y, out);
-  ref::layersBehind(context, visibility, planes.separation, out);
+  ref::drawImplicits(view, implicits, visibility, out);
+  ref::layersBehind(context, implicits, visibility, planes.separation, out);
 }
 
 }  // namespace obscura::raster

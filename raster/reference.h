@@ -1,7 +1,10 @@
 // The scalar twins of the rasterizer's stages, put together.
 #pragma once
 
+#include <functional>
+
 #include "obscura/raster/gbuffer.h"
+#include "obscura/raster/implicit.h"
 #include "obscura/raster/plane.h"
 #include "obscura/raster/surface_ref.h"
 
@@ -14,8 +17,15 @@ struct Visibility {
 };
 
 Visibility visibility(const SurfaceContext& context);
-// The layers behind it: all triangles once more for each that `out` has a plane for.
-void layersBehind(const SurfaceContext& context, const Visibility& first, float separation, GBuffer& out);
+// The layers behind it: all triangles and implicit surfaces once more for each that `out` has a plane for.
+void layersBehind(const SurfaceContext& context, Span<const ImplicitDraw> implicits, const Visibility& first, float separation,
+                  GBuffer& out);
 void resolvePixel(const SurfaceContext& context, uint32_t id, float key, int x, int y, GBuffer& out);
+
+// What is seen of implicit surfaces, before triangles that are resolved already.
+void drawImplicits(const View& view, Span<const ImplicitDraw> surfaces, Visibility& seen, GBuffer& out);
+using LimitOf = std::function<float(int x, int y)>;
+void drawImplicitsBehind(const View& view, Span<const ImplicitDraw> surfaces, bool back, const LimitOf& limitOf, Plane<float>& best);
+void resolveImplicit(const View& view, const ImplicitDraw& surface, const glm::vec3& normal, float key, int x, int y, GBuffer& out);
 
 }  // namespace obscura::raster::ref

@@ -88,7 +88,28 @@ void store(Plane<uint32_t>& plane, int x, int y, uint32_t v) {
   if (!plane.empty()) plane.at(x, y) = v;
 }
 
+// Of a pixel's centre in view space.
+glm::vec3 positionAt(const View& view, int x, int y, float zView) {
+  glm::vec3 p((float(view.xCenterSub(x)) - view.xShiftSub) / view.xScaleSub,
+              (float(view.yCenterSub(y)) - view.yShiftSub) / view.yScaleSub, 0);
+  if (view.perspective) p *= zView;
+  p.z = 0 - zView;
+  return p;
+}
+
 }  // namespace
+
+void resolveImplicit(const View& view, const ImplicitDraw& surface, const glm::vec3& normal, float key, int x, int y, GBuffer& out) {
+  const float zView = view.perspective ? 1 / key : 0 - key;
+  if (!out.depth.empty()) out.depth.at(x, y) = zView;
+  store(out.normal, x, y, normal);
+  store(out.albedo, x, y, surface.albedo);
+  store(out.emissive, x, y, surface.emissive);
+  store(out.position, x, y, positionAt(view, x, y, zView));
+  store(out.triangle, x, y, surface.id);
+  store(out.instance, x, y, surface.instance);
+  store(out.material, x, y, surface.materialIndex);
+}
 
 void resolvePixel(const SurfaceContext& context, uint32_t id, float key, int x, int y, GBuffer& out) {
   const View& view = *context.view;
@@ -101,10 +122,7 @@ void resolvePixel(const SurfaceContext& context, uint32_t id, float key, int x, 
     instance = draw.instance;
     material = draw.materialIndex;
     zView = view.perspective ? 1 / key : 0 - key;
-    position.x = (float(view.xCenterSub(x)) - view.xShiftSub) / view.xScaleSub;
-    position.y = (float(view.yCenterSub(y)) - view.yShiftSub) / view.yScaleSub;
-    if (view.perspective) position *= zView;
-    position.z = 0 - zView;
+    position = positionAt(view, x, y, zView);
 
     const SurfacePoint p = seePixel(view, draw, id - draw.firstTriangle, x, y);
     normal = shadingNormal(context, p);

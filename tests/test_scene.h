@@ -27,6 +27,7 @@ struct TestScene {
   std::vector<raster::TextureView> textures;
   std::vector<raster::Material> materials;
   std::vector<raster::Instance> instances;
+  std::vector<raster::ImplicitSurface> implicits;
   raster::Camera camera;
   int width = 64, height = 48;
 
@@ -37,7 +38,7 @@ struct TestScene {
   TestMesh& addMesh() { return meshes.emplace_back(); }
   // Fixes the mesh's view and places it.
   void place(TestMesh& mesh, uint32_t material = 0, const glm::dmat4& worldFromObject = glm::dmat4(1), bool clusters = true);
-  raster::DrawList list() const { return {instances, materials, textures}; }
+  raster::DrawList list() const { return {instances, materials, textures, implicits}; }
   // a, b, c, d counter-clockwise seen from outside.
   static void addQuad(TestMesh& mesh, glm::vec3 a, glm::vec3 b, glm::vec3 c, glm::vec3 d);
 };
