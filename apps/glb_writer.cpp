@@ -124,6 +124,7 @@ Json nodeJson(const GlbNode& node) {
   if (node.rotation != std::array<double, 4>{0, 0, 0, 1}) json["rotation"] = node.rotation;
   if (node.scale != glm::dvec3(1)) json["scale"] = array(node.scale);
   if (!node.children.empty()) json["children"] = node.children;
+  if (!node.extras.empty()) json["extras"] = Json::parse(node.extras);
   return json;
 }
 

@@ -37,6 +37,7 @@ struct GlbMesh {
 struct GlbNode {
   std::string name;
   int mesh = -1;
+  std::string extras;         // JSON, or empty
   glm::dvec3 translation{0};
   std::array<double, 4> rotation{0, 0, 0, 1};  // unit quaternion x, y, z, w
   glm::dvec3 scale{1};

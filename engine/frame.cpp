@@ -99,6 +99,7 @@ struct Renderer::State {
   std::vector<glm::vec3> ambientOfInstances;
   post::AmbientLight ambient;
   post::LinearColor radiance;  // of what is drawn, for the transfer that reads it
+  std::vector<raster::ImplicitDraw> implicits;  // of the frame
   post::DepthBounds bounds;
   post::TransferSums sums;
   // Of a frame with border or crop more is drawn than is given: this window, and in it the part that is given.
@@ -150,7 +151,7 @@ raster::DrawList Renderer::State::drawList(const Scene& scene) {
   for (const Mesh& m : scene.meshes) meshes.push_back(m.view());
   for (const Instance& i : scene.instances) instances.push_back({&meshes[i.mesh], scene.meshes[i.mesh].material, i.worldFromObject});
   for (const Texture& t : scene.textures) textures.push_back(t.view);
-  return {instances, scene.materials, textures};
+  return {instances, scene.materials, textures, scene.implicits};
 }
 
 void Renderer::State::rasterize(const raster::DrawList& list, const FrameSettings& s, const raster::PlaneSet& planes,
@@ -176,6 +177,7 @@ void Renderer::State::drawGBuffer(const Scene& scene, const FrameSettings& s, co
   window = windowToDraw(list, s, needs);
   part = {output.x - window.x, output.y - window.y, output.width, output.height};
   rasterize(list, s, needs.planes, window, more() ? drawn : out.g);
+  implicits = raster::makeImplicitDraws(list, s.camera);
   out.statistics = rasterizer.statistics();
   out.width = output.width, out.height = output.height;
   out.x = output.x, out.y = output.y;
@@ -214,6 +216,7 @@ void Renderer::State::drawTransfer(const FrameSettings& s, const Needs& needs, F
   if (needs.sums) {
     post::TransferInput in{&g, post::makeProjector(s.camera, s.width, s.height, window), s.transfer, post::transferSamples(s.transfer)};
     if (!needs.albedo && !needs.radiance) in.settings.albedo = post::TransferAlbedo::Own;  // for O, which reads none
+    in.implicits = implicits;
     if (needs.radiance) {
       radiance = post::makeLinearColor(g.width, g.height, std::move(radiance));
       const post::LightInput first{&g, nullptr, post::Occlusion::None, ambient, glm::vec3(0)};

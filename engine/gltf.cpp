@@ -31,7 +31,8 @@ class Assembly {
     findDrawn(tree.placements);
     readMeshes();
     placeMeshes(tree.placements);
-    if (scene_.instances.empty()) fail("", "the scene has no triangles");
+    placeImplicits(std::move(tree.implicits));
+    if (scene_.instances.empty() && scene_.implicits.empty()) fail("", "the scene has no triangles");
     raster::Parallel().forRanges(scene_.meshes.size(), 1, [this](size_t begin, size_t end, int) {
       for (size_t i = begin; i < end; ++i) clusterMesh(scene_.meshes[i]);
     });
@@ -104,6 +105,14 @@ class Assembly {
         scene_.instances.push_back({mesh, p.node, p.worldFromObject, p.ambient});
         extendBounds(boxes_[mesh], p.worldFromObject);
       }
+    }
+  }
+
+  void placeImplicits(std::vector<raster::ImplicitSurface> implicits) {
+    scene_.implicits = std::move(implicits);
+    for (const raster::ImplicitSurface& s : scene_.implicits) {
+      const raster::ImplicitBound bound = raster::boundOf(s);
+      extendBounds({glm::vec3(bound.center - bound.radius), glm::vec3(bound.center + bound.radius), true}, s.worldFromObject);
     }
   }
 

@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 
 #include "obscura/engine/gltf_accessor.h"
+#include "obscura/engine/gltf_implicit.h"
 
 namespace obscura::engine::gltf {
 namespace {
@@ -139,6 +140,7 @@ class Walk {
     std::optional<glm::vec3> ambient = ownAmbient(node, path);
     if (!ambient) ambient = p.ambient;
     if (node.mesh >= 0) placeMesh(node, uint32_t(p.node), path, worldFromNode, ambient);
+    placeImplicit(node, path, worldFromNode);
     if (node.camera >= 0) placeCamera(node, path, worldFromNode);
     push(node.children, path + "/children", worldFromNode, ambient, p.depth + 1);
   }
@@ -167,11 +169,18 @@ class Walk {
     if (node.skin >= 0) document_.warnings.add("skins are ignored: meshes are drawn at rest, by their node");
     const auto instancing = node.extensions.find("EXT_mesh_gpu_instancing");
     if (instancing == node.extensions.end()) {
-      reserve(1, mesh, path);
+      reserve(1, mesh.primitives.size(), path);
       tree_.placements.push_back({index, uint32_t(node.mesh), worldFromNode, ambient});
       return;
     }
     placeInstances(instancing->second.Get("attributes"), index, mesh, path, worldFromNode, ambient);
+  }
+
+  void placeImplicit(const tinygltf::Node& node, const std::string& path, const dmat4& worldFromNode) {
+    if (!node.extras.IsObject() || !node.extras.Has("obscura_implicit")) return;
+    reserve(1, 1, path);
+    tree_.implicits.push_back(readImplicit(document_, node.extras.Get("obscura_implicit"), path + "/extras/obscura_implicit"));
+    tree_.implicits.back().worldFromObject = worldFromNode;
   }
 
   void placeInstances(const tinygltf::Value& attributes, uint32_t index, const tinygltf::Mesh& mesh,
@@ -194,7 +203,7 @@ class Walk {
       count = accessors[k].count;
     }
     if (!count) fail(path, "neither TRANSLATION, ROTATION nor SCALE");
-    reserve(*count, mesh, nodePath);
+    reserve(*count, mesh.primitives.size(), nodePath);
 
     std::vector<float> parts[3];
     for (int k = 0; k < 3; ++k) {
@@ -213,8 +222,8 @@ class Walk {
     }
   }
 
-  void reserve(uint64_t count, const tinygltf::Mesh& mesh, const std::string& path) {
-    const uint64_t limit = document_.options.limits.instances, each = std::max<uint64_t>(1, mesh.primitives.size());
+  void reserve(uint64_t count, uint64_t primitives, const std::string& path) {
+    const uint64_t limit = document_.options.limits.instances, each = std::max<uint64_t>(1, primitives);
     if (count > (limit - instances_) / each) fail(path, "more instances than the limit of " + std::to_string(limit));
     instances_ += count * each;
   }

@@ -16,6 +16,7 @@ struct Placement {
 
 struct NodeTree {
   std::vector<Placement> placements;  // in the order of the nodes, depth first; of one node by instance
+  std::vector<raster::ImplicitSurface> implicits;  // likewise; without a material it is the default one
   std::vector<SceneCamera> cameras;   // likewise
 };
 

@@ -95,7 +95,12 @@ constexpr Field kMesh[] = {optional("name", Kind::String),
                            extensions({})};
 constexpr Field kInstancing[] = {required("attributes", Kind::IndexMap)};
 constexpr Field kNodeExtensions[] = {object("EXT_mesh_gpu_instancing", kInstancing)};
-constexpr Field kNodeExtras[] = {numbers("obscura_ambient", 3)};
+// The loader's own, in the extras of a node; which members a type of surface needs is for whoever reads it.
+constexpr Field kBall[] = {numbers("center", 3), required("radius", Kind::Number)};
+constexpr Field kImplicit[] = {
+    required("type", Kind::String), optional("material", Kind::Index), optional("radius", Kind::Number), optional("tube", Kind::Number),
+    numbers("size", 3), optional("period", Kind::Number), optional("thickness", Kind::Number), objects("balls", kBall)};
+constexpr Field kNodeExtras[] = {numbers("obscura_ambient", 3), object("obscura_implicit", kImplicit)};
 constexpr Field kNode[] = {
     optional("name", Kind::String), optional("mesh", Kind::Index), optional("camera", Kind::Index),
     optional("skin", Kind::Index), optional("children", Kind::Indices), numbers("matrix", 16),

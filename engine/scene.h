@@ -14,6 +14,7 @@
 
 #include "obscura/raster/camera.h"
 #include "obscura/raster/clusters.h"
+#include "obscura/raster/implicit_surface.h"
 #include "obscura/raster/material.h"
 #include "obscura/raster/mesh.h"
 
@@ -68,9 +69,11 @@ struct Scene {
   std::vector<std::string> materialNames;
   std::vector<Texture> textures;
   std::vector<Instance> instances;  // in the order of the node tree, depth first
+  // From a file: what nodes have as extras, in the same order. A program may add its own, functions included.
+  std::vector<raster::ImplicitSurface> implicits;
   std::vector<std::string> nodeNames;
   std::vector<SceneCamera> cameras;
-  Bounds bounds;                      // of all instances, world space
+  Bounds bounds;                      // of all instances and implicit surfaces, world space
   std::vector<std::string> warnings;  // one line each, every kind once
 };
 

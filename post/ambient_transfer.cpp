@@ -11,8 +11,7 @@
 
 #include <hwy/cache_control.h>
 
-#include "obscura/post/depth_map-inl.h"
-#include "obscura/post/open_block-inl.h"
+#include "obscura/post/containment-inl.h"
 #include "obscura/post/ray_hits-inl.h"
 #include "obscura/post/ray_points-inl.h"
 #include "obscura/post/sample_sets.h"
@@ -21,11 +20,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace obscura::post {
 namespace HWY_NAMESPACE {
-
-// Where the pixels of a vector are, and their frame.
-struct Pixels {
-  V3 position, t, b, n;
-};
 
 // T = normalize(N x (0, 1, 0.01)), B = N x T.
 HWY_INLINE void setFrame(Pixels& at) {
@@ -54,12 +48,13 @@ HWY_INLINE void turnFrame(Pixels& at, VF c, VF s) {
 constexpr int kSegment = 16;
 static_assert(DepthBounds::kCellWidth == kSegment, "a segment lies in one block");
 
-// kReads: what the occluders send back is subtracted from the denominators.
-template <class Points, bool kPerspective, bool kOneStep, bool kReads>
+// kReads: what the occluders send back is subtracted from the denominators. kMore: there is more than the depth map.
+template <class Points, bool kPerspective, bool kOneStep, bool kReads, bool kMore>
 class Kernel {
  public:
   Kernel(const TransferInput& in, TransferSums& out)
-      : in_(in), g_(*in.g), read_(occluderPlanes(in)), out_(out), map_(in), points_(in, in.settings.steps), reach_(points_.all()) {}
+      : in_(in), g_(*in.g), read_(occluderPlanes(in)), out_(out), map_(in), points_(in, in.settings.steps), reach_(points_.all()),
+        implicits_(in, reach_) {}
 
   TransferStatistics rows(int y0, int y1) {
     if (in_.bounds) blocks_.resize(size_t(in_.bounds->c.width()));
@@ -116,9 +111,10 @@ class Kernel {
       const VF z = hn::IfThenElse(seen[v], hn::LoadU(d, g_.depth.row(y) + x + v * kLanes), infinity);
       place(pixels[v], x + v * kLanes, y, z);
     }
+    if (kMore) implicits_.choose(pixels, seen, kVectors);
     if (in_.bounds) {
       const OpenBlock& block = blocks_[size_t(x / kSegment)];
-      bool known = block.known;
+      bool known = block.known && !(kMore && implicits_.any());
       for (int v = 0; v < kVectors && known; ++v) {
         const MF outer = knownOpen<kPerspective>(block, reach_, pixels[v].position, pixels[v].n, in_.settings.bias);
         known = hn::AllTrue(d, hn::Or(hn::Not(seen[v]), outer));
@@ -185,7 +181,8 @@ class Kernel {
         const V3 p{shifted(at.position.x, at.t.x, at.b.x, at.n.x), shifted(at.position.y, at.t.y, at.b.y, at.n.y),
                    shifted(at.position.z, at.t.z, at.b.z, at.n.z)};
         const VI texel = map_.texelOf(p);
-        const MF inner = map_.inner(p.z, texel);
+        MF inner = map_.inner(p.z, texel);
+        if (kMore) inner = hn::Or(inner, implicits_.inner(p));
         met = kOneStep ? texel : hn::IfThenElse(hn::RebindMask(di, hn::AndNot(hit, inner)), texel, met);
         hit = kOneStep ? inner : hn::Or(hit, inner);
       }
@@ -212,6 +209,7 @@ class Kernel {
   const DepthMap<kPerspective> map_;
   Points points_;
   const Reach reach_;
+  Implicits implicits_;
   std::vector<OpenBlock> blocks_;  // of the row of cells
   TransferStatistics statistics_;
   HWY_ALIGN float cosines_[kSegment], sines_[kSegment];  // the row's rotations
@@ -224,9 +222,12 @@ class Kernel {
 
 template <bool kPerspective, bool kOneStep, bool kReads>
 TransferStatistics transferRows(const TransferInput& in, int y0, int y1, TransferSums& out) {
+  const bool more = !in.implicits.empty();
   if (in.settings.estimator != Estimator::Paper)
-    return Kernel<DealtPoints, kPerspective, kOneStep, kReads>(in, out).rows(y0, y1);
-  return Kernel<SharedPoints, kPerspective, kOneStep, kReads>(in, out).rows(y0, y1);
+    return more ? Kernel<DealtPoints, kPerspective, kOneStep, kReads, true>(in, out).rows(y0, y1)
+                : Kernel<DealtPoints, kPerspective, kOneStep, kReads, false>(in, out).rows(y0, y1);
+  return more ? Kernel<SharedPoints, kPerspective, kOneStep, kReads, true>(in, out).rows(y0, y1)
+              : Kernel<SharedPoints, kPerspective, kOneStep, kReads, false>(in, out).rows(y0, y1);
 }
 
 template <bool kPerspective, bool kOneStep>

@@ -1,4 +1,5 @@
-// In:  depth, normals (and albedo, for the neighbours' W) of the G-buffer; a lit frame, for that of stored radiance.
+// In:  depth, normals (and albedo, for the neighbours' W) of the G-buffer; a lit frame, for that of stored radiance; implicit
+//      surfaces.
 // Out: per pixel the numerator and denominator of the ambient transfer (long paper, equation 9 and its shader).
 #pragma once
 
@@ -12,6 +13,7 @@
 #include "obscura/post/projector.h"
 #include "obscura/post/settings.h"
 #include "obscura/raster/gbuffer.h"
+#include "obscura/raster/implicit.h"
 #include "obscura/raster/target.h"
 
 namespace obscura::post {
@@ -48,6 +50,9 @@ struct TransferInput {
   // For TransferAlbedo::Radiance: what each pixel of the G-buffer sends out, linear, >= 0, of its size: any lit frame, as
   // light() makes one. Where something else than a number >= 0 is met, the windows concerned have no bounced light.
   const LinearColor* radiance = nullptr;
+  // Surfaces whose inside is known, seen from the same camera: what lies in a single-sided one is inside, whatever the depth map says
+  // (containment-inl.h). So they occlude where they are hidden, off screen, or farther than R behind what hides them.
+  raster::Span<const raster::ImplicitDraw> implicits = {};
 };
 
 // Allocates what the settings need; std::invalid_argument if the radiance is needed and is not there or of another size,

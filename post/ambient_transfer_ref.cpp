@@ -13,6 +13,20 @@
 namespace obscura::post {
 namespace {
 
+// f(p) < 0 for some surface; view space has z towards the eye.
+bool insideImplicit(const TransferInput& in, const glm::vec3& p) {
+  for (const raster::ImplicitDraw& s : in.implicits) {
+    glm::vec3 object;
+    for (int r = 0; r < 3; ++r) {
+      const double* m = s.objectFromView[r];
+      object[r] = float(m[0]) * p.x + float(m[1]) * p.y - float(m[2]) * p.z + float(m[3]);
+    }
+    if (std::isnan(object.x + object.y + object.z)) continue;
+    if (!s.doubleSided && raster::ref::implicitValue(s, object) < 0) return true;
+  }
+  return false;
+}
+
 void shade(const TransferInput& in, int x, int y, TransferSums& out) {
   const raster::GBuffer& g = *in.g;
   const Projector& projector = in.projector;
@@ -57,7 +71,7 @@ void shade(const TransferInput& in, int x, int y, TransferSums& out) {
         const float behind2 = scPos.z - g.depth2.at(occluder.x, occluder.y);
         within = within || (behind2 > s.bias && behind2 < kHiddenThickness * s.radius);
       }
-      outer = !(behind > s.bias && within && scPos.z > projector.zNear);
+      outer = !(behind > s.bias && within && scPos.z > projector.zNear) && !insideImplicit(in, scPos);
     }
     if (outer) num += 1;
     else

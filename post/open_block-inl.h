@@ -142,6 +142,15 @@ OpenBlock openBlock(const TransferInput& in, const Reach& reach, int column, int
   return block;
 }
 
+// Lanes whose frame is right but for a thousandth: N must be nearly unit, and N x (0, 1, 0.01) not shorter than 1/1000: it
+// errs by 2e-7 at most, T by 2e-4 of its length.
+HWY_INLINE MF hasRightFrame(const V3& n) {
+  const DF d;
+  const VF square = dot(n, n), tx = hn::Sub(hn::Mul(n.y, hn::Set(d, 0.01f)), n.z);
+  const MF unit = hn::And(hn::Le(square, hn::Set(d, 1.001f)), hn::Ge(square, hn::Set(d, 0.999f)));
+  return hn::And(unit, hn::Ge(hn::Add(hn::Mul(tx, tx), hn::Mul(n.x, n.x)), hn::Set(d, 1e-6f)));
+}
+
 // Lanes whose rays all stay outside.
 template <bool kPerspective>
 HWY_INLINE MF knownOpen(const OpenBlock& block, const Reach& reach, const V3& x, const V3& n, float bias) {
@@ -162,11 +171,7 @@ HWY_INLINE MF knownOpen(const OpenBlock& block, const Reach& reach, const V3& x,
   const VF tilted = hn::Mul(hn::Mul(hn::Add(hn::Add(slopes.x, slopes.y), slopes.z), hn::Set(d, reach.across)), hn::Set(d, 0x1p-12f));
   VF l = hn::Add(hn::Add(hn::Add(hn::Add(dot(g, x), k), hn::Add(aside, rise)), tilted), rounding);
   if (kPerspective) l = hn::Mul(hn::Sub(l, hn::Set(d, 1.0f)), farthest);
-  // N must be nearly unit, and N x (0, 1, 0.01) not shorter than 1/1000: it errs by 2e-7 at most, T by 2e-4 of its length.
-  const VF square = dot(n, n), tx = hn::Sub(hn::Mul(n.y, hn::Set(d, 0.01f)), n.z);
-  const MF unit = hn::And(hn::Le(square, hn::Set(d, 1.001f)), hn::Ge(square, hn::Set(d, 0.999f)));
-  const MF framed = hn::Ge(hn::Add(hn::Mul(tx, tx), hn::Mul(n.x, n.x)), hn::Set(d, 1e-6f));
-  return hn::And(hn::Le(l, hn::Set(d, bias)), hn::And(unit, framed));
+  return hn::And(hn::Le(l, hn::Set(d, bias)), hasRightFrame(n));
 }
 
 }  // namespace HWY_NAMESPACE

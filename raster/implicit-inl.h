@@ -65,7 +65,7 @@ HWY_INLINE hn::Vec<D> metaballs(D d, const ImplicitDraw& draw, const Point<D>& p
     const double reach = kBallReach * b.radius;
     const hn::Vec<D> field = hn::Sub(set(d, 1), hn::Mul(squared(d, q), set(d, 1 / (reach * reach))));
     const hn::Vec<D> positive = hn::IfThenElseZero(hn::Gt(field, hn::Zero(d)), field);
-    sum = hn::Add(sum, hn::Mul(positive, positive));
+    sum = hn::Add(sum, hn::Mul(hn::Mul(positive, positive), positive));
   }
   return hn::Mul(hn::Sub(set(d, kBallLevel), sum), set(d, draw.perSteepness));
 }

@@ -27,7 +27,7 @@ constexpr int kLeastSteps = 1024;  // a step is at least this part of the way th
 constexpr int kHalvings = 30;      // of a step that crosses the surface
 constexpr double kGradientStep = 1.0 / 16384;  // of the central differences that give the normal, in radii of the bound
 constexpr double kBallReach = 2;   // of a metaball, in its radii
-constexpr double kBallLevel = 0.5625;  // (1 - 1 / kBallReach^2)^2: the field of a lone ball at its radius
+constexpr double kBallLevel = 0.421875;  // (1 - 1 / kBallReach^2)^3: the field of a lone ball at its radius
 
 // A surface as this frame sees it.
 struct ImplicitDraw {

@@ -62,9 +62,9 @@ T valueOf(const ImplicitDraw& draw, const Vec3<T>& p) {
         const Vec3<T> q = p - Vec3<T>(b.center);
         const double reach = 2 * b.radius;
         const T field = 1 - (q.x * q.x + q.y * q.y + q.z * q.z) * T(1 / (reach * reach));
-        if (field > 0) sum += field * field;
+        if (field > 0) sum += field * field * field;
       }
-      return (T(0.5625) - sum) * T(draw.perSteepness);
+      return (T(0.421875) - sum) * T(draw.perSteepness);
     }
     case ImplicitShape::Gyroid: {
       const T x = p.x * T(draw.perPeriod), y = p.y * T(draw.perPeriod), z = p.z * T(draw.perPeriod), quarter = T(0.25);

@@ -27,10 +27,10 @@ ImplicitBound boundOfBalls(const std::vector<ImplicitBall>& balls) {
   return bound;
 }
 
-// The field of a ball, (1 - (d / reach)^2)^2, is nowhere steeper than 8 / (3 sqrt 3) / reach. Where fields add up their
+// The field of a ball, (1 - (d / reach)^2)^3, is nowhere steeper than 96 / (25 sqrt 5) / reach. Where fields add up their
 // balls' reaches meet in pairs: no point's slopes add up to more than those of some ball and all that meet it.
 double steepnessOfBalls(const std::vector<ImplicitBall>& balls) {
-  constexpr double kSteepest = 1.5397;
+  constexpr double kSteepest = 1.7174;
   double most = 0;
   for (const ImplicitBall& a : balls) {
     double sum = 0;
@@ -68,18 +68,23 @@ bool invert(const glm::dmat4& m, double out[3][4]) {
 ViewSphere sphereInView(const glm::dmat4& m, const ImplicitBound& bound) {
   constexpr double kSlack = 1e-4;  // far more than double and float lose on the way to the screen
   ViewSphere s;
-  double squares = 0, size = 0;
+  double size = 0, most = 0;
   for (int r = 0; r < 3; ++r) {
     double p = m[3][r];
     size += std::fabs(p);
     for (int c = 0; c < 3; ++c) {
       p += m[c][r] * bound.center[c];
       size += std::fabs(m[c][r] * bound.center[c]);
-      squares += m[c][r] * m[c][r];
     }
     s.p[r] = float(p);
   }
-  const double reach = bound.radius * std::sqrt(squares);  // the Frobenius norm bounds every stretch
+  // No direction is stretched more than by the root of the largest row sum of M^T M, of a rotation 1.
+  for (int i = 0; i < 3; ++i) {
+    double sum = 0;
+    for (int j = 0; j < 3; ++j) sum += std::fabs(m[i][0] * m[j][0] + m[i][1] * m[j][1] + m[i][2] * m[j][2]);
+    most = std::max(most, sum);
+  }
+  const double reach = bound.radius * std::sqrt(most);
   s.reach = float(reach + (size + reach) * kSlack);
   return s;
 }

@@ -44,6 +44,8 @@ GltfBuilder sample() {
   b.add("nodes", {{"children", {0}}, {"rotation", {0, 0.6, 0, 0.8}}});
   b.json["scenes"][0]["nodes"] = {1};
   b.addNode({{"camera", b.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}})}});
+  b.addNode({{"extras", {{"obscura_implicit", GltfBuilder::Json::parse(R"({"type": "metaballs", "material": 0, "radius": 1,
+    "balls": [{"center": [1, 2, 3], "radius": 1}, {"radius": 2}]})")}}}});
   return b;
 }
 
@@ -73,6 +75,10 @@ void checkSound(const Scene& scene) {
     for (const auto& uv : mesh.uvs) REQUIRE((uv.empty() || uv.size() == mesh.positions.size()));
   }
   for (const auto& instance : scene.instances) REQUIRE(instance.mesh < scene.meshes.size());
+  for (const auto& implicit : scene.implicits) {
+    REQUIRE(implicit.material < scene.materials.size());
+    REQUIRE(obscura::raster::wrongImplicit(implicit) == nullptr);
+  }
   for (const auto& material : scene.materials) REQUIRE(material.baseColorMap.texture < int(scene.textures.size()));
   for (int c = 0; c < 3; ++c) REQUIRE((std::isfinite(scene.bounds.min[c]) && std::isfinite(scene.bounds.max[c])));
 }

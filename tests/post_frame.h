@@ -33,7 +33,9 @@ inline void runPost(PostFrame& f, const raster::Camera& camera, const post::Ambi
   const int h = f.g.height;
   const bool stored = settings.albedo == post::TransferAlbedo::Radiance;
   const post::DisplayTable table;
+  const raster::Span<const raster::ImplicitDraw> implicits = f.in.implicits;
   f.in = transferInput(f.g, camera, settings);
+  f.in.implicits = implicits;
   if (stored) {
     f.radiance = post::makeLinearColor(f.g.width, h);
     const post::LightInput first{&f.g, nullptr, post::Occlusion::None, ambient, glm::vec3(0)};

@@ -1,0 +1,76 @@
+#include "obscura/apps/demo_surfaces.h"
+
+#include "obscura/apps/demo_shapes.h"
+
+namespace obscura::apps {
+namespace {
+
+using glm::dvec3;
+
+GlbMesh makeFloor(float half) {
+  GlbMesh m;
+  m.name = "floor";
+  m.positions = {{-half, 0, half}, {half, 0, half}, {half, 0, -half}, {-half, 0, -half}};
+  m.normals.assign(4, {0, 1, 0});
+  m.uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+  m.indices = {0, 1, 2, 0, 2, 3};
+  return m;
+}
+
+int addMaterial(GlbScene& scene, const char* name, dvec3 color) {
+  GlbMaterial m;
+  m.name = name;
+  m.baseColor = color;
+  scene.materials.push_back(m);
+  return int(scene.materials.size()) - 1;
+}
+
+GlbNode& addRoot(GlbScene& scene, const char* name, dvec3 translation) {
+  scene.roots.push_back(int(scene.nodes.size()));
+  GlbNode& node = scene.nodes.emplace_back();
+  node.name = name;
+  node.translation = translation;
+  return node;
+}
+
+void lookAt(GlbScene& scene, dvec3 eye, dvec3 target) {
+  scene.camera.name = "view";
+  scene.camera.eye = eye;
+  scene.camera.target = target;
+  scene.camera.yFov = 0.5;
+  scene.camera.zFar = 100;
+}
+
+}  // namespace
+
+GlbScene makeImplicitScene() {
+  GlbScene scene;
+  const int floor = addMaterial(scene, "floor", {0.7, 0.68, 0.62}), stone = addMaterial(scene, "stone", {0.4, 0.385, 0.365});
+  const char* const names[] = {"red", "green", "blue", "yellow", "white"};
+  const dvec3 colors[] = {{0.7, 0.15, 0.1}, {0.2, 0.55, 0.2}, {0.15, 0.3, 0.7}, {0.8, 0.6, 0.1}, {0.8, 0.8, 0.8}};
+  for (int k = 0; k < 5; ++k) addMaterial(scene, names[k], colors[k]);
+  scene.meshes = {makeFloor(6), makeStone(3, 200)};
+  scene.meshes[0].material = floor;
+  scene.meshes[1].material = stone;
+
+  addRoot(scene, "floor", dvec3(0)).mesh = 0;
+  addRoot(scene, "sphere", {-2.4, 0, 0.9}).extras = R"({"obscura_implicit": {"type": "sphere", "radius": 1, "material": 2}})";
+  GlbNode& box = addRoot(scene, "box", {0.1, 0.25, 1.7});
+  box.extras = R"({"obscura_implicit": {"type": "box", "size": [1, 0.9, 0.7], "material": 3}})";
+  box.rotation = {0.1, 0.3, 0, 0.9486832980505138};
+  GlbNode& torus = addRoot(scene, "torus", {1.9, 0.45, 1.3});
+  torus.extras = R"({"obscura_implicit": {"type": "torus", "radius": 0.6, "tube": 0.22, "material": 4}})";
+  torus.rotation = {0.5, 0, 0, 0.8660254037844386};
+  addRoot(scene, "metaballs", {-0.5, 0.5, -1.1}).extras = R"({"obscura_implicit": {"type": "metaballs", "material": 5, "balls": [
+    {"center": [-0.7, 0, 0], "radius": 0.6}, {"center": [0.1, 0.2, 0.3], "radius": 0.5}, {"center": [0.5, 0.7, -0.1], "radius": 0.4},
+    {"center": [0.7, -0.3, 0.3], "radius": 0.35}]}})";
+  addRoot(scene, "gyroid", {2.3, 0.95, -1.6}).extras =
+      R"({"obscura_implicit": {"type": "gyroid", "period": 0.9, "thickness": 0.1, "radius": 1, "material": 6}})";
+  GlbNode& inside = addRoot(scene, "stone", {-1.75, 0.3, 1.6});
+  inside.mesh = 1;
+  inside.scale = dvec3(0.5);
+  lookAt(scene, {1.5, 4.6, 8.4}, {0, 0.2, 0});
+  return scene;
+}
+
+}  // namespace obscura::apps
