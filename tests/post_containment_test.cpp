@@ -63,7 +63,9 @@ post::AmbientSettings settings(float radius, int steps = 1) {
 
 TEST_CASE("containment: with implicit surfaces the kernels have the bits of their twin, sampled or skipped") {
   for (const bool orthographic : {false, true}) {
-    const TestScene s = surfacesScene(orthographic);
+    TestScene s = surfacesScene(orthographic);
+    s.camera.viewFromWorld = raster::lookAt({1, 5, 10}, {-0.2, 0.1, 0}, {0, 1, 0});
+    if (orthographic) s.camera.xScale *= 0.5f, s.camera.yScale *= 0.5f;
     const std::vector<ImplicitDraw> draws = raster::makeImplicitDraws(s.list(), s.camera);
     PostFrame expected;
     expected.g = gbufferOf(s);
