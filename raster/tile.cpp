@@ -37,7 +37,7 @@ HWY_INLINE void fill(const SurfaceContext& context, bool masked, const Blocks& t
 }
 
 template <Keep kKeep>
-HWY_INLINE void rasterSmall(const SurfaceContext& context, const SmallTriangle& t, const TileBuffers& out) {
+HWY_NOINLINE void rasterSmall(const SurfaceContext& context, const SmallTriangle& t, const TileBuffers& out) {
   const int x = lowerHalf(t.block) - (out.x >> kBlockBits), y = upperHalf(t.block) - (out.y >> kBlockBits);
   if (HWY_LIKELY(t.columns() <= kBlock && t.rows() <= kBlock && !t.masked())) return fillSmall<kKeep>(t, x, y, out);
   Blocks c;
