@@ -108,7 +108,7 @@ HWY_INLINE hn::Vec<D> function(D d, const ImplicitDraw& draw, const Point<D>& p)
 }
 
 template <class D>
-HWY_INLINE hn::Vec<D> value(D d, const ImplicitDraw& draw, const Point<D>& p) {
+HWY_NOINLINE hn::Vec<D> value(D d, const ImplicitDraw& draw, const Point<D>& p) {
   const ImplicitSurface& s = *draw.surface;
   switch (s.shape) {
     case ImplicitShape::Sphere: return ball(d, s.radius, p);

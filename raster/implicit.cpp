@@ -55,7 +55,7 @@ HWY_INLINE Ray rayOf(const View& view, const ImplicitDraw& s, VD xSub, VD ySub) 
 }
 
 // Sphere tracing, see the header.
-HWY_INLINE Crossing trace(const View& view, const ImplicitDraw& s, const Ray& ray, const Sought& sought) {
+HWY_NOINLINE Crossing trace(const View& view, const ImplicitDraw& s, const Ray& ray, const Sought& sought) {
   const DD d;
   const VD zero = hn::Zero(d);
   const auto dot = [&](const P& a, const P& b) HWY_ATTR {
@@ -112,7 +112,7 @@ HWY_INLINE Crossing trace(const View& view, const ImplicitDraw& s, const Ray& ra
 }
 
 // Unit normal in view space by central differences, outwards.
-HWY_INLINE P normalOf(const ImplicitDraw& s, const P& p) {
+HWY_NOINLINE P normalOf(const ImplicitDraw& s, const P& p) {
   const DD d;
   const VD h = set(d, s.bound.radius * kGradientStep);
   const P g{hn::Sub(value(d, s, P{hn::Add(p.x, h), p.y, p.z}), value(d, s, P{hn::Sub(p.x, h), p.y, p.z})),
