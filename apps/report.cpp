@@ -32,6 +32,7 @@ Entries statisticsOf(const raster::Statistics& s, const post::TransferStatistics
           {"tiles", n(s.tiles)},
           {"tiles_empty", n(s.tilesEmpty)}};
   if (t) {
+    e.emplace_back("transfer_pixels_unasked", n(t->unasked));
     e.emplace_back("transfer_pixels_empty", n(t->empty));
     e.emplace_back("transfer_pixels_open", n(t->open));
     e.emplace_back("transfer_pixels_sampled", n(t->sampled));

@@ -8,6 +8,7 @@
 #include "obscura/engine/ambient_light.h"
 #include "obscura/engine/crop.h"
 #include "obscura/engine/downsample_frame.h"
+#include "obscura/post/asked.h"
 #include "obscura/post/transfer_samples.h"
 #include "obscura/raster/float_environment.h"
 #include "obscura/raster/parallel.h"
@@ -21,9 +22,11 @@ namespace {
 struct Needs {
   raster::PlaneSet planes;
   bool color = false, sums = false;
+  post::Occlusion occlusion = post::Occlusion::None;  // of the ambient light in the colour
   post::TransferPlanes transfer;
   bool albedo = false;    // of what occludes, or of the pixel itself
   bool radiance = false;  // of what occludes
+  bool onlyLit = false;   // O and W are for the colour alone, and some pixels may reflect nothing
 };
 
 bool emits(const Scene& scene) {
@@ -32,20 +35,37 @@ bool emits(const Scene& scene) {
   });
 }
 
+// Some pixels may reflect nothing, whatever textures hold.
+bool hasDarkThings(const Scene& scene) {
+  return std::any_of(scene.materials.begin(), scene.materials.end(), [](const raster::Material& m) {
+    return m.unlit || !(m.baseColor.x > 0 || m.baseColor.y > 0 || m.baseColor.z > 0);
+  }) || std::any_of(scene.instances.begin(), scene.instances.end(), [](const Instance& i) {
+    return i.ambient && *i.ambient == glm::vec3(0);
+  });
+}
+
+// No ambient light at all: nothing to be occluded.
+bool isDark(const Scene& scene, const FrameSettings& s) {
+  return s.ambientLight == glm::vec3(0) && !hasAmbientGroups(scene);
+}
+
 bool wants(const FrameSettings& s, Aov aov) { return std::find(s.aovs.begin(), s.aovs.end(), aov) != s.aovs.end(); }
 
 Needs needsOf(const Scene& scene, const FrameSettings& s) {
   const auto wants = [&](Aov aov) { return engine::wants(s, aov); };
   Needs n;
   n.color = wants(Aov::Color) || s.display;
-  const bool toLight = n.color && s.ambient == post::Occlusion::Transfer, w = wants(Aov::Transfer) || toLight;
+  const bool bounces = s.ambient == post::Occlusion::Transfer && s.transfer.albedo == post::TransferAlbedo::Radiance;
+  if (n.color && (bounces || !isDark(scene, s))) n.occlusion = s.ambient;
+  const bool w = wants(Aov::Transfer) || n.occlusion == post::Occlusion::Transfer;
   n.radiance = w && s.transfer.albedo == post::TransferAlbedo::Radiance;
   n.albedo = w && !n.radiance;
   n.transfer.bounced = n.radiance;
   n.transfer.w = n.radiance ? wants(Aov::Transfer) : w;
   n.transfer.obscurance =
-      wants(Aov::Obscurance) || n.radiance || (n.color && s.ambient == post::Occlusion::Obscurance);
+      wants(Aov::Obscurance) || n.radiance || n.occlusion == post::Occlusion::Obscurance;
   n.sums = w || n.transfer.obscurance;
+  n.onlyLit = n.sums && !wants(Aov::Obscurance) && !wants(Aov::Transfer) && hasDarkThings(scene);
   const bool lights = n.color || n.radiance;
   n.planes.depth = wants(Aov::Depth) || n.sums || n.color || s.supersample > 1;  // the nearest sub-pixel
   n.planes.normal = wants(Aov::Normal) || n.sums || (lights && s.ambientDirections);
@@ -101,6 +121,7 @@ struct Renderer::State {
   post::LinearColor radiance;  // of what is drawn, for the transfer that reads it
   std::vector<raster::ImplicitDraw> implicits;  // of the frame
   post::DepthBounds bounds;
+  raster::Plane<uint8_t> asked;
   post::TransferSums sums;
   // Of a frame with border or crop more is drawn than is given: this window, and in it the part that is given.
   raster::Window window, part;
@@ -119,6 +140,7 @@ struct Renderer::State {
   void rasterize(const raster::DrawList& list, const FrameSettings& s, const raster::PlaneSet& planes, const raster::Window& w,
                  raster::GBuffer& out);
   raster::Window windowToDraw(const raster::DrawList& list, const FrameSettings& s, const Needs& needs);
+  void askPixels(const FrameSettings& s, const Needs& needs, int firstRow, int endRow, post::TransferInput& in);
   post::TransferStatistics transferSums(post::TransferInput& in, int firstRow, int endRow);
 
   static constexpr size_t kRowsPerTask = 8;
@@ -184,6 +206,16 @@ void Renderer::State::drawGBuffer(const Scene& scene, const FrameSettings& s, co
   out.imageWidth = s.width, out.imageHeight = s.height;
 }
 
+// Leaves out what nobody reads, where there may be such: around a crop, and where nothing is reflected.
+void Renderer::State::askPixels(const FrameSettings& s, const Needs& needs, int firstRow, int endRow, post::TransferInput& in) {
+  if (reference || !settings.skip || !(needs.onlyLit || window.width > filteredWindow(s).width)) return;
+  post::AskedInput question{in.g, part, s.transfer.filter, needs.onlyLit, {}};
+  if (!needs.radiance) question.ambient = ambient.instances;
+  asked.resize((in.g->width + 15) / 16, in.g->height);
+  forRows(firstRow, endRow, [&](int y0, int y1) { post::askedPixels(question, y0, y1, asked); });
+  in.asked = &asked;
+}
+
 // Of the rows first ... end - 1.
 post::TransferStatistics Renderer::State::transferSums(post::TransferInput& in, int firstRow, int endRow) {
   const int w = in.g->width, h = in.g->height;
@@ -226,7 +258,9 @@ void Renderer::State::drawTransfer(const FrameSettings& s, const Needs& needs, F
       in.radiance = &radiance;
     }
     const raster::Window filtered = filteredWindow(s);
-    out.transferStatistics = transferSums(in, filtered.y - window.y, filtered.y + filtered.height - window.y);
+    const int firstRow = filtered.y - window.y, endRow = firstRow + filtered.height;
+    askPixels(s, needs, firstRow, endRow, in);
+    out.transferStatistics = transferSums(in, firstRow, endRow);
     out.timings.transfer = watch.lap();
 
     post::Transfer& transfer = more() ? drawnTransfer : out.transfer;
@@ -242,7 +276,7 @@ void Renderer::State::drawTransfer(const FrameSettings& s, const Needs& needs, F
 }
 
 void Renderer::State::drawLight(const FrameSettings& s, const Needs& needs, Frame& out) {
-  const post::LightInput in{&out.g, &out.transfer, s.ambient, ambient, s.background};
+  const post::LightInput in{&out.g, &out.transfer, needs.occlusion, ambient, s.background};
   if (needs.color) {
     for (int c = 0; overSums && c < 3; ++c) out.color.rgb[c] = std::exchange(sums.denominator[c], {});
     out.color = post::makeLinearColor(out.width, out.height, std::move(out.color));

@@ -45,7 +45,8 @@ struct FrameTimings {  // milliseconds; 0 for what was not needed
   double gbuffer = 0, transfer = 0, filter = 0, light = 0, downsample = 0, display = 0, frame = 0;
 };
 
-// Planes that no AOV needed are empty. With supersampling only planes that are AOVs themselves are there; how they come
+// Planes that no AOV needed are empty; O and W that are needed for the colour alone are those of open pixels where they
+// cannot be seen in it, as on black and on unlit things. With supersampling only planes that are AOVs themselves are there; how they come
 // from the sub-pixels: downsample_frame.h. The statistics are those of the sub-pixels' image.
 // With TransferAlbedo::Radiance the radiance is the emission and the ambient light La that the albedo reflects.
 struct Frame {

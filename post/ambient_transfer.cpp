@@ -85,6 +85,7 @@ class Kernel {
   HWY_INLINE void segment(int x, int y) {
     const DF d;
     constexpr int kLanes = int(hn::MaxLanes(DF())), kVectors = kSegment / kLanes;
+    const bool asked = !in_.asked || in_.asked->at(x / kSegment, y);
     const VF all = hn::Set(d, float(in_.settings.samples));
     const VF start = in_.settings.albedo == TransferAlbedo::Radiance ? hn::Zero(d) : all;
     const VF infinity = hn::Set(d, std::numeric_limits<float>::infinity());
@@ -99,9 +100,14 @@ class Kernel {
       hn::StoreU(all, d, numerator + v * kLanes);
       for (int c = 0; kReads && c < 3; ++c) hn::StoreU(start, d, out_.denominator[c].row(y) + x + v * kLanes);
     }
-    statistics_.empty += uint64_t(std::min(kSegment, g_.width - x)) - seenCount;
+    const uint64_t count = uint64_t(std::min(kSegment, g_.width - x));
     uint8_t& open = out_.open.at(x / kSegment, y);
     open = 1;
+    if (!asked) {
+      statistics_.unasked += count;
+      return;
+    }
+    statistics_.empty += count - seenCount;
     if (seenCount == 0) return;
 
     fetchAhead(x, y);

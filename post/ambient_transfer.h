@@ -29,11 +29,12 @@ struct TransferSums {
 
 // Every pixel is one of these. Which, depends neither on the instruction set nor on how the rows are divided.
 struct TransferStatistics {
+  uint64_t unasked = 0;  // nobody reads what they would be
   uint64_t empty = 0;    // nothing is seen there
   uint64_t open = 0;     // known from the bounds of the depth
   uint64_t sampled = 0;
 
-  void add(const TransferStatistics& o) { empty += o.empty, open += o.open, sampled += o.sampled; }
+  void add(const TransferStatistics& o) { unasked += o.unasked, empty += o.empty, open += o.open, sampled += o.sampled; }
 };
 
 // How far behind the second layer (AmbientSettings::layers) is inside, of R. All of R would be too much: where a closed
@@ -47,6 +48,8 @@ struct TransferInput {
   std::vector<glm::vec3> offsets;  // transferSamples(settings): n, or 16 n
   // Of this depth and projector, whole: where they show that every ray stays outside, none is followed. Null: all are.
   const DepthBounds* bounds = nullptr;
+  // askedPixels(): where it has 0, no ray is followed, and the sums are those of open pixels. Null: all are asked for.
+  const raster::Plane<uint8_t>* asked = nullptr;
   // For TransferAlbedo::Radiance: what each pixel of the G-buffer sends out, linear, >= 0, of its size: any lit frame, as
   // light() makes one. Where something else than a number >= 0 is met, the windows concerned have no bounced light.
   const LinearColor* radiance = nullptr;

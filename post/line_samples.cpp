@@ -59,10 +59,11 @@ class LineKernel {
     const VF infinity = hn::Set(d, std::numeric_limits<float>::infinity());
     const MF inside = hn::RebindMask(d, hn::Lt(hn::Iota(DI(), x), hn::Set(DI(), g_.width)));
     const VF z = hn::LoadU(d, g_.depth.row(y) + x);
-    const MF seen = hn::And(hn::Lt(z, infinity), inside);
+    const bool asked = !in_.asked || in_.asked->at(x / 16, y);
+    const MF seen = hn::And(hn::Lt(asked ? z : infinity, infinity), inside);
     const uint64_t seenCount = hn::CountTrue(d, seen);
     statistics_.sampled += seenCount;
-    statistics_.empty += hn::CountTrue(d, inside) - seenCount;
+    (asked ? statistics_.empty : statistics_.unasked) += hn::CountTrue(d, inside) - seenCount;
 
     LineSums s{hn::Zero(d), hn::Zero(d), {hn::Zero(d), hn::Zero(d), hn::Zero(d)}};
     if (seenCount != 0) s = sumLines(x, y, hn::IfThenElse(seen, z, one));
