@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "obscura/apps/envmap_command.h"
 #include "obscura/apps/render_command.h"
 #include "obscura/apps/report.h"
 
@@ -27,8 +28,9 @@ class WrappingFormatter : public CLI::Formatter {
   }
 };
 
-int runCommand(obscura::apps::RenderCommand& render) try {
-  return render.run();
+template <class Command>
+int runCommand(Command& command) try {
+  return command.run();
 } catch (const std::bad_alloc&) {
   return obscura::apps::fail(
       {obscura::engine::ErrorCode::BadInput, "not enough memory: try a smaller --size or fewer --aov", "", ""});
@@ -47,12 +49,14 @@ int main(int argc, char** argv) {
   app.get_formatter()->column_width(36);
   obscura::apps::RenderCommand render;
   render.addTo(app);
+  obscura::apps::EnvmapCommand envmap;
+  envmap.addTo(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
     return obscura::apps::fail(
-        {obscura::engine::ErrorCode::Usage, std::string(e.what()) + " (see obscura render --help)", "", ""});
+        {obscura::engine::ErrorCode::Usage, std::string(e.what()) + " (see obscura " + (app.got_subcommand("envmap") ? "envmap" : "render") + " --help)", "", ""});
   }
-  return runCommand(render);
+  return app.got_subcommand("envmap") ? runCommand(envmap) : runCommand(render);
 }

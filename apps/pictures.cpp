@@ -35,16 +35,6 @@ Image mapped(const Image& planes, Format format, const F& map) {
   return image;
 }
 
-Image encoded(const Image& planes, int bits) {
-  if (bits == 16)
-    return mapped<uint16_t>(planes, Format::U16, [](float v) { return wordOf(raster::srgbFromLinear(v)); });
-  const post::DisplayTable table;  // so that a colour has the same byte here as in the displayed picture
-  const float* first = table.threshold + 1;
-  return mapped<uint8_t>(planes, Format::U8, [&](float v) {
-    return v >= 0 ? uint8_t(std::upper_bound(first, first + 255, v) - first) : uint8_t(0);
-  });
-}
-
 Image linear(const Image& planes, int bits) {
   if (bits == 16) return mapped<uint16_t>(planes, Format::U16, [](float v) { return wordOf(clamped(v)); });
   return mapped<uint8_t>(planes, Format::U8, byteOf);
@@ -122,6 +112,16 @@ Image imageOf(const engine::RowSource& rows) {
 
 }  // namespace
 
+Image srgbPicture(const Image& planes, int bits) {
+  if (bits == 16)
+    return mapped<uint16_t>(planes, Format::U16, [](float v) { return wordOf(raster::srgbFromLinear(v)); });
+  const post::DisplayTable table;  // so that a colour has the same byte here as in the displayed picture
+  const float* first = table.threshold + 1;
+  return mapped<uint8_t>(planes, Format::U8, [&](float v) {
+    return v >= 0 ? uint8_t(std::upper_bound(first, first + 255, v) - first) : uint8_t(0);
+  });
+}
+
 engine::RowSource planeRows(const Frame& frame, Aov aov) {
   const Planes planes = planesOf(frame, aov);
   const size_t width = size_t(frame.width), channels = planes.first.size();
@@ -156,9 +156,9 @@ Image picture(const Frame& frame, Aov aov, int bits) {
   switch (aov) {
     case Aov::Color:
       if (bits == 8) return displayPicture(frame);
-      return encoded(planeImage(frame, aov), bits);
+      return srgbPicture(planeImage(frame, aov), bits);
     case Aov::Albedo:
-    case Aov::Emissive: return encoded(planeImage(frame, aov), bits);
+    case Aov::Emissive: return srgbPicture(planeImage(frame, aov), bits);
     case Aov::Obscurance:
     case Aov::Transfer: return linear(planeImage(frame, aov), bits);
     case Aov::Normal:

@@ -8,7 +8,7 @@
 
 namespace obscura::apps {
 
-// All functions want the AOV's planes in the frame, and throw std::bad_alloc.
+// All functions of a frame want the AOV's planes in it; all throw std::bad_alloc.
 
 // The planes themselves: F32 or, for ids, U32, every bit kept. What EXR, PFM and NPY hold and digests are of.
 engine::Image planeImage(const engine::Frame& frame, engine::Aov aov);
@@ -19,6 +19,9 @@ engine::Image displayPicture(const engine::Frame& frame);
 // The same two row by row, for digests; they read the frame as long as they live.
 engine::RowSource planeRows(const engine::Frame& frame, engine::Aov aov);
 engine::RowSource displayRows(const engine::Frame& frame);
+
+// Linear floats sRGB-encoded, U8 or U16; clamped to [0, 1], NaN is 0.
+engine::Image srgbPicture(const engine::Image& linear, int bits);
 
 // What a PNG holds. In 8 bits: color, albedo and emissive sRGB-encoded; obscurance and transfer linear, times 255 (they
 // are factors, not light), obscurance as grey; normal 255 (n / 2 + 1/2); see engine/plane_image.h for depth and ids;

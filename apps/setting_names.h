@@ -1,10 +1,11 @@
-// What the settings of the ambient transfer are called on command lines and in tables.
+// What settings are called on command lines and in tables.
 #pragma once
 
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "obscura/engine/environment_projection.h"
 #include "obscura/post/settings.h"
 
 namespace obscura::apps {
@@ -20,6 +21,11 @@ inline const Names<post::Estimator> kEstimatorNames = {
     {"paper", post::Estimator::Paper}, {"sobol", post::Estimator::Sobol}, {"box", post::Estimator::Box}, {"lines", post::Estimator::Lines}};
 inline const Names<post::FilterGuide> kFilterGuideNames = {{"depth", post::FilterGuide::Depth},
                                                            {"plane", post::FilterGuide::Plane}};
+
+inline const Names<engine::EnvironmentProjection> kProjectionNames = {{"latlong", engine::EnvironmentProjection::Latlong},
+                                                                      {"sphere", engine::EnvironmentProjection::Sphere},
+                                                                      {"cube", engine::EnvironmentProjection::Cube},
+                                                                      {"paraboloid", engine::EnvironmentProjection::Paraboloid}};
 
 // The first if the value has none.
 template <class T>

@@ -141,6 +141,37 @@ Double2 logOf(double x) {
   return twoSum(head.hi, head.lo + (s * z * p + (2.0 * sLo + e * 0x1.ef35793c76730p-45)));
 }
 
+// atan(k / 8).
+constexpr Double2 kArctangents[9] = {
+    {0, 0},
+    {0x1.fd5ba9aac2f6ep-4, -0x1.cd37686760c17p-59}, {0x1.f5b75f92c80ddp-3, 0x1.8ab6e3cf7afbdp-57},
+    {0x1.6f61941e4def1p-2, -0x1.c63aae6f6e918p-56}, {0x1.dac670561bb4fp-2, 0x1.a2b7f222f65e2p-56},
+    {0x1.1e00babdefeb4p-1, -0x1.928df287a668fp-58}, {0x1.4978fa3269ee1p-1, 0x1.2419a87f2a458p-56},
+    {0x1.700a7c5784634p-1, -0x1.8c34d25aadef6p-56}, {0x1.921fb54442d18p-1, 0x1.1a62633145c07p-55}};
+constexpr Double2 kPi = {0x1.921fb54442d18p+1, 0x1.1a62633145c07p-53};
+
+Double2 difference(Double2 a, Double2 b) {
+  const Double2 s = twoSum(a.hi, -b.hi);
+  return twoSum(s.hi, s.lo + (a.lo - b.lo));
+}
+
+// atan(y / x) for 0 <= y <= x, x in [2^-520, 2^520]. With c = k / 8 next to y / x and r = (y - c x) / (x + c y), |r| < 1/15,
+// it is atan c + atan r; the first term left out of the series is below 2^-66 r. r is made to twice double, as y - c x cancels.
+Double2 atanOfRatio(double y, double x) {
+  const int k = nearestInteger(8.0 * (y / x));
+  const double c = k * 0.125;
+  const Double2 cx = twoProduct(c, x), cy = twoProduct(c, y);
+  const Double2 above = difference({y, 0}, cx), below = difference({x, 0}, {-cy.hi, -cy.lo});
+  const double r = above.hi / below.hi;
+  const Double2 back = twoProduct(r, below.hi);
+  const double rLo = (((above.hi - back.hi) - back.lo) + (above.lo - r * below.lo)) / below.hi;
+  const double z = r * r;
+  double p = 0;
+  for (int d = 17; d >= 3; d -= 2) p = (d % 4 == 3 ? -1.0 : 1.0) / d + z * p;
+  const Double2 head = twoSum(kArctangents[k].hi, r);
+  return twoSum(head.hi, head.lo + (kArctangents[k].lo + (r * z * p + rLo)));
+}
+
 bool isZeroOrSubnormal(double x) { return (bitsOf(x) << 1 >> 53) == 0; }
 
 }  // namespace
@@ -169,6 +200,20 @@ double exactTan(double x) {
   int quarterTurns;
   const Double2 r = reduceAngle(x, quarterTurns);
   return quarterTurns & 1 ? -cosKernel(r) / sinKernel(r) : sinKernel(r) / cosKernel(r);
+}
+
+double exactAtan2(double y, double x) {
+  double ax = x < 0 ? -x : x, ay = y < 0 ? -y : y;
+  if (!(ax < kInfinity && ay < kInfinity)) return kNaN;
+  if (isZeroOrSubnormal(ax)) ax = 0;
+  if (isZeroOrSubnormal(ay)) ay = 0;
+  if (ax == 0 && ay == 0) return 0;
+  const double larger = ax > ay ? ax : ay, scale = larger > 0x1p500 ? 0x1p-600 : larger < 0x1p-500 ? 0x1p600 : 1.0;
+  ax *= scale, ay *= scale;
+  Double2 angle = ay > ax ? difference({0.5 * kPi.hi, 0.5 * kPi.lo}, atanOfRatio(ax, ay)) : atanOfRatio(ay, ax);
+  if (x < 0) angle = difference(kPi, angle);
+  if (isZeroOrSubnormal(angle.hi)) return 0;
+  return y < 0 ? -angle.hi : angle.hi;
 }
 
 double exactExp(double x) {

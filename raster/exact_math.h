@@ -14,6 +14,10 @@ double exactSin(double x);
 double exactCos(double x);
 double exactTan(double x);
 
+// The angle of (x, y) from the x axis in radians, [-pi, pi]: 1 ulp. 0 for (0, 0), positive where y is zero of either sign.
+// Coordinates that are not finite: NaN. asin s = exactAtan2(s, sqrt((1 - s) (1 + s))), and acos alike.
+double exactAtan2(double y, double x);
+
 // 1 ulp. Infinity above 709.782 (ln of the largest double), 0 below -708.396 (ln of the smallest normal one).
 double exactExp(double x);
 

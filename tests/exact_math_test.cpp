@@ -73,6 +73,25 @@ TEST_CASE("exact math: sin, cos and tan are within their stated error for |x| <=
   CHECK(tanError <= 2.5);
 }
 
+TEST_CASE("exact math: atan2 is within its stated error in all quadrants and for all magnitudes") {
+  Random random{7};
+  double error = 0;
+  const auto measure = [&](double y, double x) {
+    error = std::max(error, ulps(exactAtan2(y, x), std::atan2(static_cast<long double>(y), static_cast<long double>(x))));
+  };
+  for (int i = 0; i < kInputs; ++i) {
+    measure(random.in(-1, 1), random.in(-1, 1));
+    measure(signedMagnitude(random, -300, 300), signedMagnitude(random, -300, 300));
+    // Beside the tabled ratios, where the numerator cancels, and beside those half way between.
+    const double x = random.in(1, 2), ratio = double(random.next() % 17) / 16;
+    measure(x * ratio * (1 + random.in(-1e-9, 1e-9)), x);
+    measure(x, -x * ratio);
+  }
+  for (double x : {0x1p1023, -0x1p1023, 0x1p-1022}) measure(0x1.8p1023, x), measure(0x1.8p-1021, x);
+  CAPTURE(error);
+  CHECK(error <= 1);
+}
+
 TEST_CASE("exact math: exp is within its stated error wherever the result is a normal number") {
   Random random{2};
   double error = 0;
@@ -142,6 +161,20 @@ TEST_CASE("exact math: what lies out of range has the documented result") {
     CHECK(std::isnan(exactCos(x)));
     CHECK(std::isnan(exactTan(x)));
   }
+  for (double x : {kNaN, kInf, -kInf}) {
+    CHECK(std::isnan(exactAtan2(x, 1)));
+    CHECK(std::isnan(exactAtan2(1, x)));
+  }
+  CHECK(exactAtan2(0, 0) == 0);
+  CHECK(exactAtan2(-0.0, -0.0) == 0);
+  CHECK(exactAtan2(0, 3) == 0);
+  for (double zero : {0.0, -0.0, 5e-324, -5e-324}) {
+    CHECK(exactAtan2(zero, -3) == (zero < 0 ? -1 : 1) * 3.141592653589793);
+    CHECK(exactAtan2(3, zero) == 3.141592653589793 / 2);
+    CHECK(exactAtan2(-3, zero) == -3.141592653589793 / 2);
+  }
+  CHECK(exactAtan2(1e-300, 1e300) == 0);
+
   CHECK(exactSin(0.0) == 0);
   CHECK(std::signbit(exactSin(-0.0)));
   CHECK(exactCos(-0.0) == 1);
@@ -198,6 +231,7 @@ TEST_CASE("exact math: the bits of ten thousand results are the same on every ma
     add(exactLog(positive));
     const double base = random.in(0, 2);
     add(exactPow(base, random.in(-5, 5)));
+    add(exactAtan2(random.in(-1, 1), random.in(-1, 1)));
   }
-  CHECK(h == 0xc620cd470767ed7aull);
+  CHECK(h == 0x4d5f47031596917full);
 }
