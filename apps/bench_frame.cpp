@@ -13,8 +13,6 @@
 namespace obscura::apps {
 namespace {
 
-constexpr int kWarmUp = 2;
-
 struct Column {
   const char* name;
   double engine::FrameTimings::*value;

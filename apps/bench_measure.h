@@ -11,6 +11,8 @@
 
 namespace obscura::apps {
 
+constexpr int kWarmUp = 2;  // frames that are drawn and not counted
+
 // q in [0, 1]; values not empty.
 double quantile(std::vector<double> values, double q);
 
@@ -46,7 +48,7 @@ struct FrameCost {
 
 // When to stop: after mostFrames, or from leastFrames on when mostSeconds are over.
 struct FrameBudget {
-  int warmUp = 2, leastFrames = 3, mostFrames = 20;
+  int warmUp = kWarmUp, leastFrames = 3, mostFrames = 20;
   double mostSeconds = 1.5;
 };
 

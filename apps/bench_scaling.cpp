@@ -1,7 +1,6 @@
 #include "obscura/apps/bench_scaling.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <cstring>
 #include <stdexcept>
@@ -10,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "obscura/apps/bench_scenes.h"
+#include "obscura/apps/option_text.h"
 #include "obscura/apps/svg_plot.h"
 #include "obscura/engine/image_file.h"
 #include "obscura/raster/view.h"
@@ -20,14 +20,6 @@ namespace {
 constexpr double kMostUnique = 1e7;        // triangles that are really there
 constexpr uint64_t kFixedScene = 1000000;  // triangles of the sweeps over pixels and threads, at most
 constexpr unsigned kMostSeconds = 60;      // a cell's process
-
-// What a cell's process leaves behind: plain bytes.
-struct Measured {
-  FrameTimes times;
-  uint64_t submitted = 0, drawn = 0;
-  double sceneMb = 0, peakMb = 0;
-  char digest[33] = {};
-};
 
 raster::PlaneSet depthNormalAlbedo() {
   raster::PlaneSet planes;
@@ -43,19 +35,6 @@ double estimatedMb(double unique, double submitted, double pixels) {
 
 unsigned coreCount() { return std::max(1u, std::thread::hardware_concurrency()); }
 
-bool readSize(const std::string& text, int& width, int& height) {
-  const char* end = text.data() + text.size();
-  int w = 0, h = 0;
-  const auto first = std::from_chars(text.data(), end, w);
-  if (first.ec != std::errc() || first.ptr == end || *first.ptr != 'x') return false;
-  const auto second = std::from_chars(first.ptr + 1, end, h);
-  if (second.ec != std::errc() || second.ptr != end) return false;
-  if (std::min(w, h) < 1 || std::max(w, h) > raster::kMaxImageSize) return false;
-  width = w;
-  height = h;
-  return true;
-}
-
 void addSize(CLI::App& app, const std::string& name, int& width, int& height, const std::string& what) {
   const auto set = [&width, &height, name](const std::string& text) {
     if (!readSize(text, width, height))
@@ -67,6 +46,14 @@ void addSize(CLI::App& app, const std::string& name, int& width, int& height, co
 }
 
 }  // namespace
+
+// What a cell's process leaves behind: plain bytes.
+struct ScalingBenchmark::Measured {
+  FrameTimes times;
+  uint64_t submitted = 0, drawn = 0;
+  double sceneMb = 0, peakMb = 0;
+  char digest[33] = {};
+};
 
 struct ScalingBenchmark::Cell {
   uint64_t triangles = 0;  // asked for

@@ -25,6 +25,7 @@ struct ScalingBenchmark {
   void addTo(CLI::App& app, int& status);
 
  private:
+  struct Measured;
   struct Cell;
   struct Column;
   struct Sweep;

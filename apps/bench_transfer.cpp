@@ -14,7 +14,7 @@
 namespace obscura::apps {
 namespace {
 
-constexpr int kBoxes = 2, kWarmUp = 2;
+constexpr int kBoxes = 2;
 
 engine::Result<engine::Scene> sceneOf(const std::string& file, const engine::LoadOptions& load) {
   if (file.empty()) return makeGround(kBoxes);

@@ -1,10 +1,10 @@
 #include "obscura/apps/envmap_command.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <optional>
 
+#include "obscura/apps/option_text.h"
 #include "obscura/apps/outputs.h"
 #include "obscura/apps/pictures.h"
 #include "obscura/apps/report.h"
@@ -12,6 +12,7 @@
 #include "obscura/apps/signals.h"
 #include "obscura/engine/environment_map.h"
 #include "obscura/engine/image_file.h"
+#include "obscura/raster/view.h"
 
 namespace obscura::apps {
 namespace {
@@ -34,7 +35,6 @@ PNG gets sRGB bytes.
 
 Exit codes: 0 done, 2 usage, 3 bad input, 4 cannot write, 128+n ended by signal n.
 )";
-constexpr int kMostSide = 16384;
 
 CLI::Validator projectionName() {
   return CLI::Validator(
@@ -66,17 +66,11 @@ Result<EnvironmentProjector> sizeOf(const std::string& text, EnvironmentProjecti
     return from.projection == to ? from : same;
   }
   int size[2] = {0, 0};
-  const char* end = text.data() + text.size();
-  const auto [x, error] = std::from_chars(text.data(), end, size[0]);
-  bool good = error == std::errc() && x != end && *x == 'x';
-  if (good) {
-    const auto [last, second] = std::from_chars(x + 1, end, size[1]);
-    good = second == std::errc() && last == end && std::max(size[0], size[1]) <= kMostSide;
-  }
+  const bool good = readSize(text, size[0], size[1]);
   const auto p = good ? engine::projectorOfImage(to, size[0], size[1]) : std::nullopt;
   if (p) return *p;
   const std::string shape = to == EnvironmentProjection::Cube ? "4 to 3" : to == EnvironmentProjection::Sphere ? "1 to 1" : "2 to 1";
-  return Error{ErrorCode::Usage, "--size: \"" + text + "\" is not the size WxH of a " + nameOf(kProjectionNames, to) + " map: " + shape + ", up to " + std::to_string(kMostSide) + " a side", "", ""};
+  return Error{ErrorCode::Usage, "--size: \"" + text + "\" is not the size WxH of a " + nameOf(kProjectionNames, to) + " map: " + shape + ", up to " + std::to_string(raster::kMaxImageSize) + " a side", "", ""};
 }
 
 Result<std::vector<uint8_t>> encode(FileFormat format, const EnvironmentMap& map, const std::string& path) {
