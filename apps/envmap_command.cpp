@@ -25,7 +25,7 @@ using engine::ErrorCode;
 using engine::FileFormat;
 using engine::Result;
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kEnvmapExamples = R"(Examples:
   obscura envmap sky.hdr -o cube.exr --to cube
   obscura envmap ball.png -o sky.exr --from sphere --to latlong --size 1024x512
   obscura envmap sky.exr -o look.png --to paraboloid
@@ -83,7 +83,7 @@ Result<std::vector<uint8_t>> encode(FileFormat format, const EnvironmentMap& map
   return error;
 }
 
-std::string shown(const EnvironmentProjector& p) {
+std::string described(const EnvironmentProjector& p) {
   return nameOf(kProjectionNames, p.projection) + " " + std::to_string(p.imageWidth()) + "x" + std::to_string(p.imageHeight());
 }
 
@@ -91,7 +91,7 @@ std::string shown(const EnvironmentProjector& p) {
 
 void EnvmapCommand::addTo(CLI::App& program) {
   CLI::App& c = *program.add_subcommand("envmap", "converts an environment map to another projection");
-  c.footer(kExamples);
+  c.footer(kEnvmapExamples);
   c.add_option("IN", input_, "an environment map, any image: .hdr, .exr, .png, ...")->required()->type_name("");
   c.add_option("-o,--output", output_, "file to write: .exr, .hdr, .pfm, .npy (linear floats) or .png (sRGB)")->required()->type_name("FILE");
   const char* names = "latlong|sphere|cube|paraboloid";
@@ -119,7 +119,7 @@ int EnvmapCommand::run() {
   if (!bytes) return fail(bytes.error());
   if (const auto done = engine::writeFileAtomically(output_, *bytes); !done) return fail(done.error());
   std::printf("%s -> %s\nround_trip_rmse %.6g\nround_trip_relative %.6g\nround_trip_largest %.6g\nround_trip_rmse_below_1 %.6g\n",
-              shown(in->map.projector()).c_str(), shown(out.projector()).c_str(), lost.rmse, lost.relative, lost.largest, lost.clamped);
+              described(in->map.projector()).c_str(), described(out.projector()).c_str(), lost.rmse, lost.relative, lost.largest, lost.clamped);
   return std::fflush(stdout) == 0 ? kDone : kCannotWrite;
 }
 
