@@ -27,4 +27,10 @@ function(obscura_layer name)
     $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(obscura_${name} PUBLIC ${L_PUBLIC} PRIVATE ${L_PRIVATE})
   obscura_compile_options(obscura_${name})
+  # With sanitizers, Highway's emulation of vectors by loops takes five minutes a kernel to compile: SSSE3 is the least then,
+  # and SSE4, which differs by little, is left out. All targets compile the same sources.
+  if(OBSCURA_SANITIZE AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    target_compile_options(obscura_${name} PRIVATE -mssse3)
+    target_compile_definitions(obscura_${name} PRIVATE HWY_DISABLED_TARGETS=HWY_SSE4)
+  endif()
 endfunction()
