@@ -1,0 +1,47 @@
+// In:  all surfaces of a scene: normals, areas, reflectances, what they emit; directions, one for each class.
+// Out: the light that arrives from the scene at a surface of each class (Castro, Neumann, Sbert: Extended Ambient Term).
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "obscura/engine/result.h"
+#include "obscura/engine/scene.h"
+#include "obscura/raster/parallel.h"
+
+namespace obscura::engine {
+
+// What the surfaces around the direction f_k add up to; scene units squared, and colours as radiance (radiosity / pi), as
+// everywhere here. Sums over i: triangles with weights mu_ik = max(0, n_i . f_k), which are divided by their sum over k.
+struct AmbientClass {
+  glm::dvec3 direction{0, 0, 1};  // f_k, unit, world space
+  double area = 0;                // A_k   = sum mu_ik A_i
+  glm::dvec3 reflected{0};        // sum mu_ik A_i rho_i: A_k times the mean reflectance
+  glm::dvec3 emitted{0};          // U_k   = sum mu_ik A_i E_i, the unshot power
+};
+
+// The faces of a cube, in the order of FrameSettings::ambientDirections: +x, -x, +y, -y, +z, -z.
+std::array<glm::dvec3, 6> cubeDirections();
+
+// A triangle's reflectance is its base colour, with the mean of the texture instead of what the triangle shows of it, and
+// with the mean of its vertex colours; what is unlit reflects nothing and emits that. Double-sided triangles are two.
+// Triangles without area count nothing, nor do those that face away from all directions; implicit surfaces have no
+// triangles. The sums do not depend on the number of threads.
+std::vector<AmbientClass> ambientClasses(const Scene& scene, const std::vector<glm::dvec3>& directions, raster::Parallel& parallel);
+
+// The incoming light per class, equations 1 and 2:  B_k = U_k / A_k + rho_k In_k,  In_k = sum_j F_kj B_j, with F_kk = 0 and
+// F_kj = 1 / (C - 1). `light`: what arrives everywhere besides, such as a constant ambient term; its first reflection is
+// unshot power, rho_k light, and it is in the result. Classes without area send nothing. rho_k is clamped to 0.99: in a
+// closed room whose walls absorb nothing light would have no end. In_k of one class alone is `light`.
+std::vector<glm::vec3> incomingLight(const std::vector<AmbientClass>& classes, const glm::dvec3& light);
+
+// Both, for the six faces of a cube: FrameSettings::ambientDirections, to be used with an ambient light of 1. BadInput: a
+// light beyond what floats hold.
+Result<std::array<glm::vec3, 6>> extendedAmbient(const Scene& scene, const glm::dvec3& light, raster::Parallel& parallel);
+
+// Some surface sends out light of its own.
+bool emitsLight(const Scene& scene);
+
+}  // namespace obscura::engine
