@@ -1,9 +1,6 @@
 #include "obscura/apps/frame_options.h"
 
 #include <algorithm>
-#include <cmath>
-#include <map>
-#include <string_view>
 #include <vector>
 
 #include "obscura/apps/option_text.h"
@@ -140,6 +137,31 @@ void addAmbientVariants(CLI::App& app, FrameOptions& o) {
       ->group("View");
 }
 
+void addEnvironment(CLI::App& app, FrameOptions& o) {
+  const char* group = "Environment";
+  EnvironmentOptions& e = o.environment;
+  CLI::Option* file = app.add_option("--environment", e.file,
+                                     "light from a map, any image, in place of --ambient-light: .hdr, .exr, .png, ... [none]")
+                          ->type_name("FILE")
+                          ->excludes("--ambient-light")
+                          ->group(group);
+  addChoice(app, "--env-projection", kProjectionNames, e.projection, "of the map: how directions lie in it")->needs(file)->group(group);
+  const auto inRange = [](double least, double most, double& value) {
+    return [=, &value](const std::string& text) {
+      const std::optional<double> v = numberOf<double>(text);
+      if (v && *v >= least && *v <= most) value = *v;
+      return v && *v >= least && *v <= most;
+    };
+  };
+  addRead(app, "--env-rotate", "DEGREES", "turns the map around the vertical (+y), counter-clockwise seen from above [0]",
+          inRange(-engine::kMostRotation, engine::kMostRotation, e.rotation))
+      ->needs(file)
+      ->group(group);
+  addRead(app, "--env-intensity", "FACTOR", "on the map's radiance, 0 to 10^6 [1]", inRange(0, engine::kMostIntensity, e.intensity))
+      ->needs(file)
+      ->group(group);
+}
+
 void addView(CLI::App& app, FrameOptions& o) {
   const std::string size = std::to_string(o.width) + "x" + std::to_string(o.height);
   addRead(app, "--size", "WxH",
@@ -263,6 +285,7 @@ void FrameOptions::addTo(CLI::App& app) {
                                                     " a side: choose a smaller --size or --supersample");
   });
   addView(app, *this);
+  addEnvironment(app, *this);
   addAmbient(app, *this);
   addExecution(app, *this);
 }
@@ -289,6 +312,13 @@ engine::Result<ResolvedFrame> FrameOptions::resolve(const engine::Scene& in) con
   out.frame.ambientLight = ambientLight;
   out.frame.ambientDirections = ambientDirections;
   out.frame.background = background;
+  if (!environment.file.empty()) {
+    engine::Result<engine::Environment> read = engine::readEnvironment(environment.file, environment.projection, raster.threads);
+    if (!read) return read.error();
+    out.frame.environment = std::make_shared<const engine::Environment>(std::move(*read));
+    out.frame.environmentRotation = environment.rotation;
+    out.frame.environmentIntensity = environment.intensity;
+  }
   out.frame.transfer = transfer;
   out.frame.transfer.radius = float(r);
   out.frame.transfer.bias = float(bias.value_or(engine::kDefaultBias * r));

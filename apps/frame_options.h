@@ -25,6 +25,12 @@ struct ResolvedFrame {
   bool reference = false;
 };
 
+struct EnvironmentOptions {
+  std::string file;  // empty: none
+  engine::EnvironmentProjection projection = engine::EnvironmentProjection::Latlong;
+  double rotation = 0, intensity = 1;  // as in engine::FrameSettings
+};
+
 // The members' initial values are the options' defaults and show up in --help: a program that wants others sets them
 // before addTo(). The object must outlive the parsing.
 struct FrameOptions {
@@ -37,6 +43,7 @@ struct FrameOptions {
   glm::vec3 background{0}, ambientLight{1};  // linear
   std::optional<std::array<glm::vec3, 6>> ambientDirections;   // as in engine::FrameSettings
   std::vector<std::pair<std::string, glm::vec3>> ambientNodes;  // as in engine::LoadOptions
+  EnvironmentOptions environment;
   post::Occlusion ambient = post::Occlusion::Transfer;
   post::AmbientSettings transfer;                          // but for three of the lengths below
   std::optional<double> radius, bias, filterThreshold;     // scene units; empty: a fraction of the scene's size
@@ -50,7 +57,7 @@ struct FrameOptions {
   // What the scene must be loaded with.
   engine::LoadOptions load() const;
 
-  // Usage: no such camera, or lengths that are no number in this scene.
+  // Usage: no such camera, or lengths that are no number in this scene. BadInput: an environment that cannot be read.
   engine::Result<ResolvedFrame> resolve(const engine::Scene& scene) const;
 };
 

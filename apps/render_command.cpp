@@ -231,6 +231,10 @@ int RenderCommand::run() {
   progress.step("rendering");
   Result<ResolvedFrame> resolved = options_.resolve(*scene);
   if (!resolved) return failed(resolved.error());
+  run.environment = watch.lap();
+  progress.clear();
+  if (resolved->frame.environment)
+    for (const std::string& warning : resolved->frame.environment->warnings) printWarning(warning);
   resolved->frame.aovs = aovs;
   resolved->frame.display = std::find(aovs.begin(), aovs.end(), Aov::Color) != aovs.end();
   engine::Renderer renderer(resolved->raster, resolved->reference);

@@ -46,7 +46,7 @@ Entries timingsOf(const engine::FrameTimings& f, const RunTimings& r) {
     std::snprintf(text, sizeof text, "%.3f", v);
     return std::string(text);
   };
-  return {{"load_ms", ms(r.load)},     {"gbuffer_ms", ms(f.gbuffer)}, {"transfer_ms", ms(f.transfer)},
+  return {{"load_ms", ms(r.load)},     {"environment_ms", ms(r.environment)}, {"gbuffer_ms", ms(f.gbuffer)}, {"transfer_ms", ms(f.transfer)},
           {"filter_ms", ms(f.filter)}, {"light_ms", ms(f.light)},     {"downsample_ms", ms(f.downsample)},
           {"display_ms", ms(f.display)}, {"frame_ms", ms(f.frame)},   {"digest_ms", ms(r.digest)},
           {"encode_ms", ms(r.encode)}, {"write_ms", ms(r.write)}};

@@ -17,7 +17,7 @@ void printWarning(const std::string& message);  // "obscura: warning: ..." on st
 int fail(const engine::Error& error);           // "obscura: error: ..."; returns the exit code
 
 struct RunTimings {  // milliseconds; the frame's own are in Frame::timings
-  double load = 0, encode = 0, write = 0, digest = 0;
+  double load = 0, environment = 0, encode = 0, write = 0, digest = 0;
 };
 
 // One line per AOV in the order given, see engine::digestLine; after "color" also "display", the picture's sRGB bytes.

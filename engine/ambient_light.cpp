@@ -6,17 +6,28 @@
 
 #include <glm/geometric.hpp>
 
+#include "obscura/engine/irradiance.h"
+#include "obscura/raster/exact_math.h"
+
 namespace obscura::engine {
 namespace {
 
 // A direction of the world, as the G-buffer's normals are turned.
-glm::vec3 inView(const glm::dmat4& viewFromWorld, const glm::dvec3& direction) {
+glm::dvec3 inView(const glm::dmat4& viewFromWorld, const glm::dvec3& direction) {
   const glm::dvec3 turned = glm::dmat3(viewFromWorld) * direction;
   const double length = glm::length(turned);  // 1 unless the view scales
-  return length > 0 ? glm::vec3(turned / length) : glm::vec3(0);
+  return length > 0 ? turned / length : glm::dvec3(0);
 }
 
 }  // namespace
+
+glm::dmat3 viewFromEnvironment(const raster::Camera& camera, double degrees) {
+  const double angle = degrees * 0.017453292519943295, c = raster::exactCos(angle), s = raster::exactSin(angle);
+  const glm::dvec3 axes[3] = {{c, 0, -s}, {0, 1, 0}, {s, 0, c}};
+  glm::dmat3 m;
+  for (int k = 0; k < 3; ++k) m[k] = inView(camera.viewFromWorld, axes[k]);
+  return m;
+}
 
 bool hasAmbientGroups(const Scene& scene) {
   return std::any_of(scene.instances.begin(), scene.instances.end(), [](const Instance& i) { return i.ambient.has_value(); });
@@ -36,11 +47,14 @@ post::AmbientLight ambientLightOf(const Scene& scene, const FrameSettings& setti
     }
     light.instances = table;
   }
+  if (settings.environment)
+    light.environment = quadricOf(settings.environment->harmonics, viewFromEnvironment(settings.camera, settings.environmentRotation),
+                                  settings.environmentIntensity);
   if (settings.ambientDirections)
     for (int k = 0; k < 6; ++k) {
       glm::dvec3 axis(0);
       axis[k / 2] = k % 2 ? -1 : 1;
-      light.directions.push_back({inView(settings.camera.viewFromWorld, axis), (*settings.ambientDirections)[size_t(k)]});
+      light.directions.push_back({glm::vec3(inView(settings.camera.viewFromWorld, axis)), (*settings.ambientDirections)[size_t(k)]});
     }
   return light;
 }

@@ -1,6 +1,7 @@
 #include "obscura/engine/frame.h"
 
 #include <algorithm>
+#include <cmath>
 #include <new>
 #include <stdexcept>
 #include <utility>
@@ -46,8 +47,11 @@ bool hasDarkThings(const Scene& scene) {
 
 // No ambient light at all: nothing to be occluded.
 bool isDark(const Scene& scene, const FrameSettings& s) {
-  return s.ambientLight == glm::vec3(0) && !hasAmbientGroups(scene);
+  return s.ambientLight == glm::vec3(0) && !s.environment && !hasAmbientGroups(scene);
 }
+
+// The light depends on the direction of surfaces.
+bool lightsByNormal(const FrameSettings& s) { return s.ambientDirections || s.environment; }
 
 bool wants(const FrameSettings& s, Aov aov) { return std::find(s.aovs.begin(), s.aovs.end(), aov) != s.aovs.end(); }
 
@@ -68,7 +72,7 @@ Needs needsOf(const Scene& scene, const FrameSettings& s) {
   n.onlyLit = n.sums && !wants(Aov::Obscurance) && !wants(Aov::Transfer) && hasDarkThings(scene);
   const bool lights = n.color || n.radiance;
   n.planes.depth = wants(Aov::Depth) || n.sums || n.color || s.supersample > 1;  // the nearest sub-pixel
-  n.planes.normal = wants(Aov::Normal) || n.sums || (lights && s.ambientDirections);
+  n.planes.normal = wants(Aov::Normal) || n.sums || (lights && lightsByNormal(s));
   n.planes.albedo = wants(Aov::Albedo) || n.albedo || lights;
   n.planes.emissive = wants(Aov::Emissive) || (lights && emits(scene));
   n.planes.position = wants(Aov::Position);
@@ -96,6 +100,8 @@ const char* wrongSetting(const FrameSettings& s) {
   if (t.estimator == post::Estimator::Lines && t.membership != post::Membership::Linear)
     return "line samples have the linear membership: choose that, or another estimator";
   if (!(t.filterThreshold > 0)) return "the filter threshold must be positive";
+  if (!(s.environmentIntensity >= 0 && s.environmentIntensity <= kMostIntensity)) return "the environment's intensity must be 0 to 10^6";
+  if (!(std::fabs(s.environmentRotation) <= kMostRotation)) return "the environment's rotation must be -10^6 to 10^6 degrees";
   const auto isColor = [](const glm::vec3& v) {
     return v.x >= 0 && v.y >= 0 && v.z >= 0 && std::max({v.x, v.y, v.z}) < 1e30f;
   };
@@ -322,7 +328,7 @@ Result<Done> Renderer::render(const Scene& scene, const FrameSettings& settings,
 
   const bool normalIsAov = std::find(settings.aovs.begin(), settings.aovs.end(), Aov::Normal) != settings.aovs.end();
   const bool normalIsRead = (settings.transfer.filter && settings.transfer.filterGuide == post::FilterGuide::Plane) ||
-                            settings.ambientDirections;
+                            lightsByNormal(settings);
   s.overNormals = supersampled && needs.transfer.w && !normalIsAov && !normalIsRead;
   s.overSums = supersampled;
   if (needs.color || needs.radiance) s.ambient = ambientLightOf(scene, settings, s.ambientOfInstances);

@@ -10,6 +10,7 @@
 #include <glm/vec3.hpp>
 
 #include "obscura/engine/aov.h"
+#include "obscura/engine/environment.h"
 #include "obscura/engine/result.h"
 #include "obscura/engine/scene.h"
 #include "obscura/post/depth_filter.h"
@@ -35,6 +36,10 @@ struct FrameSettings {
   // normal: colours from +x, -x, +y, -y, +z and -z of the world, see post::AmbientLight.
   glm::vec3 ambientLight{1};
   std::optional<std::array<glm::vec3, 6>> ambientDirections;
+  // In place of ambientLight; node groups of their own keep theirs, and directions are factors on it, too.
+  std::shared_ptr<const Environment> environment;
+  double environmentRotation = 0;   // degrees around +y of the world, counter-clockwise seen from above
+  double environmentIntensity = 1;  // a factor on it, 0 ... 10^6
   glm::vec3 background{0};        // linear
   std::vector<Aov> aovs = {Aov::Color};
   bool display = false;           // also the picture as sRGB bytes

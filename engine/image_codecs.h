@@ -35,6 +35,9 @@ bool isNpy(Bytes file);
 Result<Image> decodeNpy(Bytes file, const std::string& name, const DecodeLimits& limits);
 Result<std::vector<uint8_t>> encodeNpy(const Image& image);
 
+bool isRadiance(Bytes file);  // of the usual kind: RGB, rows from the top; others are left to the module
+Result<Image> decodeRadiance(Bytes file, const std::string& name, const DecodeLimits& limits);
+
 // Through the OpenImageIO module, loaded at the first call of either and kept until the process ends.
 Result<std::vector<Layer>> decodeWithModule(Bytes file, const std::string& name, const DecodeLimits& limits);
 Result<std::vector<uint8_t>> encodeWithModule(const std::string& name, const std::vector<Layer>& layers,

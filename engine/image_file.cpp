@@ -89,6 +89,7 @@ std::optional<Result<Image>> decodeNatively(Bytes file, const std::string& name,
   if (codec::isJpeg(file)) return codec::decodeJpeg(file, name, limits, rgba8);
   if (codec::isPfm(file)) return codec::decodePfm(file, name, limits);
   if (codec::isNpy(file)) return codec::decodeNpy(file, name, limits);
+  if (codec::isRadiance(file)) return codec::decodeRadiance(file, name, limits);
   return {};
 }
 

@@ -1,6 +1,7 @@
 // In: bytes of image files, or layers.  Out: images, or image files.
-// PNG and JPEG are handled by libpng and libjpeg-turbo directly; everything else goes through OpenImageIO, which
-// is loaded (as a module) at the first use: it brings some 260 shared libraries with it.
+// PNG and JPEG are handled by libpng and libjpeg-turbo directly, Radiance's HDR (read only), PFM and NPY by code of the
+// engine's own; everything else goes through OpenImageIO, which is loaded (as a module) at the first use: it brings some
+// 260 shared libraries with it.
 #pragma once
 
 #include <cstdint>

@@ -28,6 +28,7 @@ class Ambient {
     const DF d;
     V3 la{hn::Set(d, in_.color.x), hn::Set(d, in_.color.y), hn::Set(d, in_.color.z)};
     if (!kVaries) return la;
+    if (in_.environment) la = ofEnvironment(x, y);
     if (!in_.instances.empty()) la = ofInstance(x, y, la);
     if (!in_.directions.empty()) {
       const V3 by = byNormal(x, y);
@@ -50,11 +51,33 @@ class Ambient {
             hn::IfThenElse(found, hn::GatherIndex(d, table + 2, first), otherwise.z)};
   }
 
+  HWY_INLINE V3 normalAt(int x, int y) const {
+    const DF d;
+    return {hn::LoadU(d, g_.normal[0].row(y) + x), hn::LoadU(d, g_.normal[1].row(y) + x), hn::LoadU(d, g_.normal[2].row(y) + x)};
+  }
+
+  // One channel of the quadratic form.
+  static HWY_INLINE VF quadric(const NormalQuadric& q, int c, const V3& n) {
+    const DF d;
+    const auto times = [&](float factor, VF v) { return hn::Mul(hn::Set(d, factor), v); };
+    const VF x = hn::Add(hn::Add(hn::Add(times(q.xx[c], n.x), times(q.xy[c], n.y)), times(q.xz[c], n.z)), hn::Set(d, q.x[c]));
+    const VF y = hn::Add(hn::Add(times(q.yy[c], n.y), times(q.yz[c], n.z)), hn::Set(d, q.y[c]));
+    const VF z = hn::Add(times(q.zz[c], n.z), hn::Set(d, q.z[c]));
+    const VF sum = hn::Add(hn::Add(hn::Add(hn::Mul(x, n.x), hn::Mul(y, n.y)), hn::Mul(z, n.z)), hn::Set(d, q.constant[c]));
+    const VF most = hn::Set(d, q.most[c]);
+    return hn::IfThenElseZero(hn::Gt(sum, hn::Zero(d)), hn::IfThenElse(hn::Lt(sum, most), sum, most));
+  }
+
+  HWY_NOINLINE V3 ofEnvironment(int x, int y) const {
+    const V3 n = normalAt(x, y);
+    const NormalQuadric& q = *in_.environment;
+    return {quadric(q, 0, n), quadric(q, 1, n), quadric(q, 2, n)};
+  }
+
   HWY_INLINE V3 byNormal(int x, int y) const {
     const DF d;
     const VF zero = hn::Zero(d);
-    const V3 n{hn::LoadU(d, g_.normal[0].row(y) + x), hn::LoadU(d, g_.normal[1].row(y) + x),
-               hn::LoadU(d, g_.normal[2].row(y) + x)};
+    const V3 n = normalAt(x, y);
     V3 sum{zero, zero, zero};
     VF weights = zero;
     for (const AmbientDirection& k : in_.directions) {

@@ -8,8 +8,19 @@
 namespace obscura::post {
 namespace {
 
+glm::vec3 fromEnvironment(const NormalQuadric& q, float x, float y, float z) {
+  glm::vec3 la;
+  for (int c = 0; c < 3; ++c) {
+    const float ofX = (q.xx[c] * x + q.xy[c] * y + q.xz[c] * z + q.x[c]) * x, ofY = (q.yy[c] * y + q.yz[c] * z + q.y[c]) * y;
+    const float sum = ofX + ofY + (q.zz[c] * z + q.z[c]) * z + q.constant[c];
+    la[c] = !(sum > 0) ? 0 : std::min(sum, q.most[c]);
+  }
+  return la;
+}
+
 glm::vec3 ambientAt(const AmbientLight& in, const raster::GBuffer& g, int x, int y) {
   glm::vec3 la = in.color;
+  if (in.environment) la = fromEnvironment(*in.environment, g.normal[0].at(x, y), g.normal[1].at(x, y), g.normal[2].at(x, y));
   if (!in.instances.empty() && g.instance.at(x, y) < in.instances.size()) la = in.instances[g.instance.at(x, y)];
   if (in.directions.empty()) return la;
   glm::vec3 sum(0), all(0);

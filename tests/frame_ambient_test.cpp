@@ -21,7 +21,8 @@ engine::FrameSettings settingsOf(const TestScene& scene) {
 }
 
 // A wall across the view of a camera that looks along `view` of the world.
-engine::Frame wallSeenAlong(const glm::dvec3& view, const std::optional<glm::vec3>& group) {
+engine::Frame wallSeenAlong(const glm::dvec3& view, const std::optional<glm::vec3>& group,
+                            std::shared_ptr<const engine::Environment> environment = {}, double rotation = 0) {
   TestScene s;
   s.materials.resize(1);
   s.materials[0].doubleSided = true;
@@ -35,7 +36,9 @@ engine::Frame wallSeenAlong(const glm::dvec3& view, const std::optional<glm::vec
   engine::FrameSettings settings = settingsOf(s);
   settings.camera = raster::perspective(0.7, 1.4, 0.1);
   settings.camera.viewFromWorld = raster::lookAt({0, 0, 0}, view, up);
-  settings.ambientDirections = kSixColors;
+  if (!environment) settings.ambientDirections = kSixColors;
+  settings.environment = std::move(environment);
+  settings.environmentRotation = rotation;
   return frameOf(scene, settings);
 }
 
@@ -52,6 +55,62 @@ TEST_CASE("ambient frames: directions are the world's: a wall that faces +x is l
       CHECK(f.color.rgb[c].at(35, 25) == Approx(expected[c] * glm::vec3(1, 0.8f, 0.6f)[c]).margin(1e-5));
       CHECK(ofGroup.color.rgb[c].at(35, 25) == Approx(expected[c] * glm::vec3(2, 4, 8)[c]).margin(1e-5));
     }
+  }
+}
+
+namespace {
+
+// The light of a map whose radiance is 1 + 0.5 d . to.
+std::shared_ptr<const engine::Environment> lightFrom(const glm::dvec3& to) {
+  raster::Parallel parallel(1);
+  engine::EnvironmentMap map({engine::EnvironmentProjection::Latlong, 32, 16});
+  for (int y = 0; y < 16; ++y)
+    for (int x = 0; x < 32; ++x) map.at(0, x, y) = glm::vec3(float(1 + 0.5 * glm::dot(to, map.projector().directionAt({0, x + 0.5, y + 0.5}))));
+  map.fillBorders(parallel);
+  auto out = std::make_shared<engine::Environment>();
+  out->harmonics = engine::harmonicsOf(map, parallel);
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("ambient frames: an environment's directions are the world's, and it turns counter-clockwise seen from above") {
+  for (int k = 0; k < 6; ++k) {
+    glm::dvec3 faces(0);
+    faces[k / 2] = k % 2 ? -1 : 1;
+    const engine::Frame f = wallSeenAlong(-faces, std::nullopt, lightFrom(faces)), away = wallSeenAlong(-faces, std::nullopt, lightFrom(-faces));
+    INFO("direction " << k);
+    CHECK(f.color.rgb[0].at(35, 25) == Approx(1 + 0.5 * 2 / 3).margin(0.01));
+    CHECK(away.color.rgb[0].at(35, 25) == Approx(1 - 0.5 * 2 / 3).margin(0.01));
+  }
+  // A quarter of a turn brings +x to -z, and what faces that gets it.
+  CHECK(wallSeenAlong({0, 0, 1}, std::nullopt, lightFrom({1, 0, 0}), 90).color.rgb[0].at(35, 25) > 1.3f);
+  CHECK(wallSeenAlong({0, 0, -1}, std::nullopt, lightFrom({1, 0, 0}), 90).color.rgb[0].at(35, 25) < 0.7f);
+  CHECK(wallSeenAlong({0, 0, 1}, glm::vec3(2, 4, 8), lightFrom({1, 0, 0})).color.rgb[0].at(35, 25) == 2);  // a group of its own
+}
+
+TEST_CASE("ambient frames: lit by an environment they have one digest for threads, targets, tiles, skipping and the twins") {
+  const TestScene soup = soupScene(4);
+  const engine::Scene scene = sceneFrom(soup);
+  engine::FrameSettings s = settingsOf(soup);
+  s.environment = lightFrom({0.48, 0.64, 0.6});
+  s.environmentRotation = 33;
+  s.environmentIntensity = 1.7;
+  s.ambientDirections = kSixColors;
+  s.aovs = allAovs();
+  s.display = true;
+  for (auto albedo : {post::TransferAlbedo::Neighbour, post::TransferAlbedo::Radiance}) {
+    s.transfer.albedo = albedo;
+    s.supersample = albedo == post::TransferAlbedo::Radiance ? 2 : 1;
+    const auto expected = imagesOf(frameOf(scene, s, {}, true));
+    for (raster::Target target : raster::supportedTargets())
+      for (int tile : {16, 64})
+        for (int threads : {1, 3})
+          for (bool skip : {true, false}) {
+            const auto found = imagesOf(frameOf(scene, s, {threads, target, tile, skip}));
+            INFO(raster::targetName(target) << " tile " << tile << " threads " << threads << " skip " << skip);
+            for (size_t k = 0; k < found.size(); ++k) REQUIRE(found[k].bytes == expected[k].bytes);
+          }
   }
 }
 
@@ -108,6 +167,14 @@ TEST_CASE("ambient frames: colours that are none are usage errors") {
   (*s.ambientDirections)[4].y = -1;
   CHECK(engine::Renderer().render(scene, s, frame).error().code == engine::ErrorCode::Usage);
   s.ambientDirections.reset();
+  for (double wrong : {-1.0, 1e7, std::numeric_limits<double>::quiet_NaN()}) {
+    s.environmentIntensity = wrong;
+    CHECK(engine::Renderer().render(scene, s, frame).error().code == engine::ErrorCode::Usage);
+  }
+  s.environmentIntensity = 1;
+  s.environmentRotation = std::numeric_limits<double>::infinity();
+  CHECK(engine::Renderer().render(scene, s, frame).error().code == engine::ErrorCode::Usage);
+  s.environmentRotation = 0;
   scene.instances[0].ambient = glm::vec3(0, std::numeric_limits<float>::quiet_NaN(), 0);
   CHECK(engine::Renderer().render(scene, s, frame).error().code == engine::ErrorCode::Usage);
 }

@@ -42,6 +42,14 @@ AmbientLight cube(const glm::vec3 (&colors)[6]) {
   return light;
 }
 
+// Coefficients of any sign.
+post::NormalQuadric randomQuadric(Random& random) {
+  post::NormalQuadric q;
+  for (glm::vec3* v : {&q.constant, &q.x, &q.y, &q.z, &q.xx, &q.xy, &q.xz, &q.yy, &q.yz, &q.zz}) *v = random.vector(-1, 1);
+  q.most = random.vector(0, 4);
+  return q;
+}
+
 const glm::vec3 kSix[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {0, 1, 1}, {2, 0, 2}};
 
 }  // namespace
@@ -83,6 +91,35 @@ TEST_CASE("ambient light: of a normal without direction it is the mean of the co
   }
 }
 
+TEST_CASE("ambient light: of an environment it is a quadratic form of the normal, and a group's own light comes before it") {
+  AmbientLight light(glm::vec3(9));
+  post::NormalQuadric& q = light.environment.emplace();
+  q.constant = {1, 2, 0}, q.x = {3, 0, 0}, q.yy = {0, 8, 0}, q.xz = {0, 0, 4}, q.most = {3.5f, 100, 100};
+  CHECK(ambientOf(light, {1, 0, 0}) == glm::vec3(3.5f, 2, 0));  // kept below the most
+  CHECK(ambientOf(light, {-1, 0, 0}) == glm::vec3(0, 2, 0));    // and above 0
+  CHECK(ambientOf(light, {0, -1, 0}) == glm::vec3(1, 10, 0));
+  CHECK(ambientOf(light, {0.5f, 0, 0.5f}) == glm::vec3(2.5f, 2, 1));
+  const std::vector<glm::vec3> table{{5, 6, 7}};
+  light.instances = table;
+  CHECK(ambientOf(light, {1, 0, 0}, 0) == table[0]);
+  CHECK(ambientOf(light, {1, 0, 0}, 1) == glm::vec3(3.5f, 2, 0));
+  light.directions = cube(kSix).directions;
+  CHECK(ambientOf(light, {0, -1, 0}, 1) == glm::vec3(1, 10, 0));
+}
+
+TEST_CASE("ambient light: of an environment it lies in its range, whatever the normal holds") {
+  const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+  Random random(5);
+  AmbientLight light;
+  for (int k = 0; k < 20; ++k) {
+    light.environment = randomQuadric(random);
+    for (const glm::vec3& n : {glm::vec3(0), glm::vec3(nan), glm::vec3(inf, 0, 0), glm::vec3(-inf, inf, 0), glm::vec3(1e20f, -1e30f, 0), glm::vec3(1e-40f, nan, 1)}) {
+      const glm::vec3 la = ambientOf(light, n);
+      for (int c = 0; c < 3; ++c) CHECK((la[c] >= 0 && la[c] <= light.environment->most[c]));
+    }
+  }
+}
+
 TEST_CASE("ambient light: one colour, a table of it and a cube of white are the same, to the bit") {
   const TestScene s = soupScene(4);
   const AmbientLight everywhere(glm::vec3(0.3f, 0.7f, 1.9f));
@@ -114,6 +151,7 @@ TEST_CASE("ambient light: every variant equals its scalar twin, with every W") {
     for (size_t i = 0; 2 * i < s.instances.size(); ++i) table.push_back(random.vector(0, 2));  // half of them
     AmbientLight ambient(random.vector(0, 2));
     if (seed % 4 != 0) ambient.instances = table;
+    if (seed % 3 != 1) ambient.environment = randomQuadric(random);
     for (int k = random.integer(0, 3) * 3; k > 0; --k) ambient.directions.push_back({random.vector(-1, 1), random.vector(0, 2)});
     AmbientSettings settings;
     settings.radius = 1;

@@ -1,0 +1,30 @@
+// An environment as a cube map, for passes that look into it pixel by pixel.
+#pragma once
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+#include "obscura/raster/span.h"
+
+namespace obscura::post {
+
+// Faces +x -x +y -y +z -z, each seen from inside, as in a map whose middle is -z (right-handed, y up):
+//   face      +x   -x   +y   -y   +z   -z
+//   right     +z   -z   +x   +x   -x   +x
+//   up        +y   +y   +z   -z   +y   +y
+// With m the largest of |d.x|, |d.y|, |d.z| (of equals the first), a direction d lies in the face of m's axis and sign, at
+// s = d . right / m and t = d . up / m. A face has `size` x `size` texels, row 0 on top, and around them a border of one that
+// continues it, so that bilinear look-ups are seamless.
+struct EnvironmentCube {
+  int size = 0;                          // 1 ... 8192
+  raster::Span<const glm::vec3> texels;  // 6 x (size + 2) x (size + 2): linear radiance, >= 0 and finite
+};
+
+// How a frame sees it.
+struct EnvironmentView {
+  EnvironmentCube cube;
+  glm::mat3 mapFromView{1};  // from camera space (x right, y up, z towards the eye) to directions of the map
+  float intensity = 1;       // a factor on the radiance
+};
+
+}  // namespace obscura::post
