@@ -5,6 +5,7 @@
 
 #include "obscura/apps/option_text.h"
 #include "obscura/apps/setting_names.h"
+#include "obscura/raster/exact_math.h"
 #include "obscura/raster/view.h"
 
 namespace obscura::apps {
@@ -162,6 +163,20 @@ void addEnvironment(CLI::App& app, FrameOptions& o) {
       ->group(group);
 }
 
+void addDisplay(CLI::App& app, FrameOptions& o) {
+  const char* group = "Display (of pictures: PNG and the digest display; the AOV color stays as it is)";
+  addRead(app, "--exposure", "STOPS", "brighter by so many powers of two, -64 to 64 [0]",
+          [&o](const std::string& text) {
+            const std::optional<double> stops = numberOf<double>(text);
+            if (!stops || !(*stops >= -64 && *stops <= 64)) return false;
+            o.tone.exposure = float(raster::exactPow(2, *stops));
+            return true;
+          })
+      ->group(group);
+  addChoice(app, "--tonemap", kToneCurveNames, o.tone.curve, "how bright colours are brought into a screen's range: cut off, or by a curve")
+      ->group(group);
+}
+
 void addView(CLI::App& app, FrameOptions& o) {
   const std::string size = std::to_string(o.width) + "x" + std::to_string(o.height);
   addRead(app, "--size", "WxH",
@@ -202,7 +217,15 @@ void addView(CLI::App& app, FrameOptions& o) {
   addInteger(app, "--scene", 0, 1 << 30, o.scene, "which of the file's scenes [the default one]")
       ->type_name("INDEX")
       ->group("View");
-  addColor(app, "--background", o.background, "colour where nothing is seen");
+  addRead(app, "--background", "R,G,B|#RRGGBB|environment",
+          "what is where nothing is seen: a colour, R,G,B linear or #RRGGBB sRGB, or the environment [" + shown(o.background) + "]",
+          [&o](const std::string& text) {
+            const std::optional<glm::vec3> color = colorOf(text);
+            o.environment.background = text == "environment";
+            if (color) o.background = *color;
+            return color || o.environment.background;
+          })
+      ->group("View");
   addLength(app, "--separation", false, o.separation, "how far behind what is seen the AOV depth2 and the second layer begin",
             shown(engine::kDefaultSeparation) + " x R, with --layers 2 " + shown(engine::kLayerSeparation) + " x R")->group("View");
   addColor(app, "--ambient-light", o.ambientLight, "the light that comes from everywhere");
@@ -276,6 +299,8 @@ void addExecution(CLI::App& app, FrameOptions& o) {
 
 void FrameOptions::addTo(CLI::App& app) {
   app.parse_complete_callback([this] {
+    if (environment.background && environment.file.empty())
+      throw CLI::ValidationError("--background", "environment needs --environment FILE");
     if (std::max(width, height) <= raster::kMaxImageSize / supersample) return;
     const auto size = [](int w, int h) { return std::to_string(w) + "x" + std::to_string(h); };
     throw CLI::ValidationError("--supersample", size(width, height) + " pixels times " + std::to_string(supersample) +
@@ -286,6 +311,7 @@ void FrameOptions::addTo(CLI::App& app) {
   });
   addView(app, *this);
   addEnvironment(app, *this);
+  addDisplay(app, *this);
   addAmbient(app, *this);
   addExecution(app, *this);
 }
@@ -312,12 +338,15 @@ engine::Result<ResolvedFrame> FrameOptions::resolve(const engine::Scene& in) con
   out.frame.ambientLight = ambientLight;
   out.frame.ambientDirections = ambientDirections;
   out.frame.background = background;
+  out.frame.tone = tone;
   if (!environment.file.empty()) {
-    engine::Result<engine::Environment> read = engine::readEnvironment(environment.file, environment.projection, raster.threads);
+    engine::Result<engine::Environment> read =
+        engine::readEnvironment(environment.file, environment.projection, environment.background, raster.threads);
     if (!read) return read.error();
     out.frame.environment = std::make_shared<const engine::Environment>(std::move(*read));
     out.frame.environmentRotation = environment.rotation;
     out.frame.environmentIntensity = environment.intensity;
+    out.frame.environmentBackground = environment.background;
   }
   out.frame.transfer = transfer;
   out.frame.transfer.radius = float(r);

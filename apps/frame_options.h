@@ -29,6 +29,7 @@ struct EnvironmentOptions {
   std::string file;  // empty: none
   engine::EnvironmentProjection projection = engine::EnvironmentProjection::Latlong;
   double rotation = 0, intensity = 1;  // as in engine::FrameSettings
+  bool background = false;
 };
 
 // The members' initial values are the options' defaults and show up in --help: a program that wants others sets them
@@ -44,6 +45,7 @@ struct FrameOptions {
   std::optional<std::array<glm::vec3, 6>> ambientDirections;   // as in engine::FrameSettings
   std::vector<std::pair<std::string, glm::vec3>> ambientNodes;  // as in engine::LoadOptions
   EnvironmentOptions environment;
+  post::ToneSettings tone;
   post::Occlusion ambient = post::Occlusion::Transfer;
   post::AmbientSettings transfer;                          // but for three of the lengths below
   std::optional<double> radius, bias, filterThreshold;     // scene units; empty: a fraction of the scene's size

@@ -156,6 +156,7 @@ Image picture(const Frame& frame, Aov aov, int bits) {
   switch (aov) {
     case Aov::Color:
       if (bits == 8) return displayPicture(frame);
+      if (!frame.shown.rgb[0].empty()) return srgbPicture(engine::interleave({&frame.shown.rgb[0], &frame.shown.rgb[1], &frame.shown.rgb[2]}), bits);
       return srgbPicture(planeImage(frame, aov), bits);
     case Aov::Albedo:
     case Aov::Emissive: return srgbPicture(planeImage(frame, aov), bits);

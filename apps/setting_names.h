@@ -7,6 +7,7 @@
 
 #include "obscura/engine/environment_projection.h"
 #include "obscura/post/settings.h"
+#include "obscura/post/tone_map.h"
 
 namespace obscura::apps {
 
@@ -22,6 +23,8 @@ inline const Names<post::Estimator> kEstimatorNames = {
 inline const Names<post::FilterGuide> kFilterGuideNames = {{"depth", post::FilterGuide::Depth},
                                                            {"plane", post::FilterGuide::Plane}};
 
+inline const Names<post::ToneCurve> kToneCurveNames = {
+    {"none", post::ToneCurve::None}, {"reinhard", post::ToneCurve::Reinhard}, {"neutral", post::ToneCurve::Neutral}};
 inline const Names<engine::EnvironmentProjection> kProjectionNames = {{"latlong", engine::EnvironmentProjection::Latlong},
                                                                       {"sphere", engine::EnvironmentProjection::Sphere},
                                                                       {"cube", engine::EnvironmentProjection::Cube},

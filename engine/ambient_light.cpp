@@ -5,6 +5,7 @@
 #include <string>
 
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "obscura/engine/irradiance.h"
 #include "obscura/raster/exact_math.h"
@@ -27,6 +28,12 @@ glm::dmat3 viewFromEnvironment(const raster::Camera& camera, double degrees) {
   glm::dmat3 m;
   for (int k = 0; k < 3; ++k) m[k] = inView(camera.viewFromWorld, axes[k]);
   return m;
+}
+
+post::EnvironmentView environmentViewOf(const FrameSettings& s) {
+  const EnvironmentMap& cube = s.environment->cube;
+  const glm::dmat3 mapFromView = glm::transpose(viewFromEnvironment(s.camera, s.environmentRotation));
+  return {{cube.projector().width, cube.texels()}, glm::mat3(mapFromView), float(s.environmentIntensity)};
 }
 
 bool hasAmbientGroups(const Scene& scene) {

@@ -5,6 +5,7 @@
 
 #include "obscura/engine/frame.h"
 #include "obscura/post/ambient_light.h"
+#include "obscura/post/environment_cube.h"
 
 namespace obscura::engine {
 
@@ -14,6 +15,9 @@ bool hasAmbientGroups(const Scene& scene);
 // From directions of an environment map that is turned by so many degrees around +y, counter-clockwise seen from above, to
 // view space: a rotation, for cameras whose view is one but for a scale.
 glm::dmat3 viewFromEnvironment(const raster::Camera& camera, double degrees);
+
+// What the environment's cube is to the pixels of a frame. It must be there.
+post::EnvironmentView environmentViewOf(const FrameSettings& settings);
 
 // The table that the result may point to is kept in `table`. Throws std::invalid_argument if an instance's light is below 0
 // or not finite.

@@ -1,5 +1,7 @@
 #include "obscura/engine/environment.h"
 
+#include <algorithm>
+#include <cmath>
 #include <new>
 
 #include "obscura/engine/environment_map.h"
@@ -7,13 +9,20 @@
 
 namespace obscura::engine {
 
-Result<Environment> readEnvironment(const std::string& path, EnvironmentProjection projection, int threads) try {
+Result<Environment> readEnvironment(const std::string& path, EnvironmentProjection projection, bool cube, int threads) try {
   const raster::FloatEnvironment environment;
   raster::Parallel parallel(threads);
   const Result<EnvironmentFile> file = readEnvironmentMap(path, projection, parallel);
   if (!file) return file.error();
   Environment out;
   out.harmonics = harmonicsOf(file->map, parallel);
+  if (cube) {
+    // A latlong map's texels are 2 pi / width wide in its middle, a cube's 2 / side: side = width / pi, and a fifth more, as
+    // both interpolate.
+    const double side = 0.53 * std::sqrt(usedTexels(file->map.projector()));
+    const int n = std::min(4096, std::max(1, int(std::ceil(side))));
+    out.cube = convertEnvironment(file->map, {EnvironmentProjection::Cube, n, n}, parallel);
+  }
   if (file->clamped > 0) out.warnings.push_back(path + ": " + std::to_string(file->clamped) + " values are negative, no numbers or too large: clamped");
   return out;
 } catch (const std::bad_alloc&) {

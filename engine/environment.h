@@ -1,5 +1,5 @@
 // In:  an environment map's file.
-// Out: what frames are lit by: its diffuse light.
+// Out: what frames are lit by, its diffuse light, and what is seen behind the scene.
 #pragma once
 
 #include <string>
@@ -15,10 +15,12 @@ constexpr double kMostIntensity = 1e6, kMostRotation = 1e6;
 
 struct Environment {
   Harmonics harmonics{};
+  EnvironmentMap cube;                // to look into; without texels unless asked for
   std::vector<std::string> warnings;  // one line each
 };
 
-// threads: 0: one per core; changes no bit. BadInput: no such map.
-Result<Environment> readEnvironment(const std::string& path, EnvironmentProjection projection, int threads);
+// The cube has texels of about the map's size in the middle of its faces, at most 4096 a side. threads: 0: one per core;
+// changes no bit. BadInput: no such map.
+Result<Environment> readEnvironment(const std::string& path, EnvironmentProjection projection, bool cube, int threads);
 
 }  // namespace obscura::engine

@@ -12,6 +12,7 @@
 #include "obscura/engine/image.h"
 #include "obscura/engine/result.h"
 #include "obscura/raster/parallel.h"
+#include "obscura/raster/span.h"
 
 namespace obscura::engine {
 
@@ -25,6 +26,9 @@ class EnvironmentMap {
   explicit EnvironmentMap(const EnvironmentProjector& projector);  // black; throws std::bad_alloc
 
   const EnvironmentProjector& projector() const { return projector_; }
+
+  // Panel by panel, row by row, with the border; of a cube as post::EnvironmentCube has them.
+  raster::Span<const glm::vec3> texels() const { return texels_; }
 
   // Texels from -1 to width and height: the border counts.
   const glm::vec3& at(int panel, int x, int y) const { return texels_[index(panel, x, y)]; }
@@ -51,7 +55,7 @@ class EnvironmentMap {
   void fillCubeCorners();
 
   EnvironmentProjector projector_;
-  std::vector<glm::vec3> texels_;  // panel by panel, row by row, with the border
+  std::vector<glm::vec3> texels_;
 };
 
 // Each texel is the mean of as many points of `from` as that is finer (at most 16 x 16): 1 at about equal sizes.

@@ -10,6 +10,7 @@
 #include "obscura/engine/crop.h"
 #include "obscura/engine/downsample_frame.h"
 #include "obscura/post/asked.h"
+#include "obscura/post/environment_background.h"
 #include "obscura/post/transfer_samples.h"
 #include "obscura/raster/float_environment.h"
 #include "obscura/raster/parallel.h"
@@ -102,6 +103,8 @@ const char* wrongSetting(const FrameSettings& s) {
   if (!(t.filterThreshold > 0)) return "the filter threshold must be positive";
   if (!(s.environmentIntensity >= 0 && s.environmentIntensity <= kMostIntensity)) return "the environment's intensity must be 0 to 10^6";
   if (!(std::fabs(s.environmentRotation) <= kMostRotation)) return "the environment's rotation must be -10^6 to 10^6 degrees";
+  if (s.environmentBackground && !(s.environment && !s.environment->cube.texels().empty())) return "an environment as background needs one with a cube";
+  if (!(s.tone.exposure >= 0 && s.tone.exposure <= kMostExposure)) return "the exposure must be a factor of 0 to 2^64";
   const auto isColor = [](const glm::vec3& v) {
     return v.x >= 0 && v.y >= 0 && v.z >= 0 && std::max({v.x, v.y, v.z}) < 1e30f;
   };
@@ -154,7 +157,8 @@ struct Renderer::State {
   void drawGBuffer(const Scene& scene, const FrameSettings& s, const Needs& needs, Frame& out);
   void drawTransfer(const FrameSettings& s, const Needs& needs, Frame& out);
   void drawLight(const FrameSettings& s, const Needs& needs, Frame& out);
-  void drawDisplay(Frame& out);
+  void drawBackground(const FrameSettings& s, Frame& out);
+  void drawDisplay(const FrameSettings& s, Frame& out);
 
   // Calls body(y0, y1) for bands of the rows first ... end - 1, in parallel.
   template <class Body>
@@ -290,6 +294,7 @@ void Renderer::State::drawLight(const FrameSettings& s, const Needs& needs, Fram
       reference ? post::lightRef(in, y0, y1, out.color) : post::light(in, y0, y1, out.color, target);
     });
   }
+  if (needs.color && s.environmentBackground) drawBackground(s, out);
   if (needs.radiance && needs.transfer.w)
     forRows(0, out.height, [&](int y0, int y1) {
       reference ? post::transferOfBouncedRef(in, y0, y1, out.transfer.w)
@@ -297,10 +302,21 @@ void Renderer::State::drawLight(const FrameSettings& s, const Needs& needs, Fram
     });
 }
 
-void Renderer::State::drawDisplay(Frame& out) {
-  out.display = post::makeDisplayImage(out.width, out.height, std::move(out.display));
+void Renderer::State::drawBackground(const FrameSettings& s, Frame& out) {
+  const post::BackgroundInput in{&out.g, post::makeProjector(s.camera, s.width, s.height, outputWindow(s)), environmentViewOf(s)};
   forRows(0, out.height, [&](int y0, int y1) {
-    reference ? post::displayRef(out.color, table, y0, y1, out.display) : post::display(out.color, table, y0, y1, out.display, target);
+    reference ? post::environmentBackgroundRef(in, y0, y1, out.color) : post::environmentBackground(in, y0, y1, out.color, target);
+  });
+}
+
+void Renderer::State::drawDisplay(const FrameSettings& s, Frame& out) {
+  const bool plain = s.tone.changesNothing();
+  out.shown = plain ? post::LinearColor() : post::makeLinearColor(out.width, out.height, std::move(out.shown));
+  out.display = post::makeDisplayImage(out.width, out.height, std::move(out.display));
+  const post::LinearColor& from = plain ? out.color : out.shown;
+  forRows(0, out.height, [&](int y0, int y1) {
+    if (!plain) reference ? post::toneMapRef(out.color, s.tone, y0, y1, out.shown) : post::toneMap(out.color, s.tone, y0, y1, out.shown, target);
+    reference ? post::displayRef(from, table, y0, y1, out.display) : post::display(from, table, y0, y1, out.display, target);
   });
 }
 
@@ -354,8 +370,9 @@ Result<Done> Renderer::render(const Scene& scene, const FrameSettings& settings,
     }
     timings.downsample = watch.lap();
   }
+  if (!settings.display) frame.shown = {};
   if (settings.display) {
-    s.drawDisplay(frame);
+    s.drawDisplay(settings, frame);
     timings.display = watch.lap();
   }
   timings.frame = total.lap();

@@ -16,9 +16,12 @@
 #include "obscura/post/depth_filter.h"
 #include "obscura/post/display.h"
 #include "obscura/post/light.h"
+#include "obscura/post/tone_map.h"
 #include "obscura/raster/rasterizer.h"
 
 namespace obscura::engine {
+
+constexpr float kMostExposure = 0x1p64f;
 
 struct FrameSettings {
   int width = 800, height = 600;  // pixels, 1 ... raster::kMaxImageSize
@@ -41,6 +44,8 @@ struct FrameSettings {
   double environmentRotation = 0;   // degrees around +y of the world, counter-clockwise seen from above
   double environmentIntensity = 1;  // a factor on it, 0 ... 10^6
   glm::vec3 background{0};        // linear
+  bool environmentBackground = false;  // the environment instead, which has a cube then
+  post::ToneSettings tone;             // of the displayed picture alone
   std::vector<Aov> aovs = {Aov::Color};
   bool display = false;           // also the picture as sRGB bytes
   float separation = 0.01f;       // of Aov::Depth2, scene units, see raster::GBuffer
@@ -61,6 +66,7 @@ struct Frame {
   raster::GBuffer g;
   post::Transfer transfer;
   post::LinearColor color;
+  post::LinearColor shown;              // the colour as it is displayed, where the tone settings change it
   post::DisplayImage display;
   raster::Statistics statistics;
   post::TransferStatistics transferStatistics;  // 0 where the transfer was not needed or the reference made it

@@ -55,7 +55,9 @@ struct Workplace : tests::SceneFolder {
 TEST_CASE("cli: every option of the environment changes the picture") {
   const Workplace w;
   std::set<std::string> pictures{w.digest({})};
-  for (const Words& options : std::vector<Words>{{}, {"--env-rotate", "90"}, {"--env-rotate=-90"}, {"--env-intensity", "0.5"}, {"--ambient", "off"},
+  for (const Words& options : std::vector<Words>{{}, {"--env-rotate", "90"}, {"--env-rotate=-90"}, {"--env-intensity", "0.5"}, {"--background", "environment"},
+                                                 {"--exposure", "-1"}, {"--exposure", "1.5"}, {"--tonemap", "reinhard"}, {"--tonemap", "neutral"},
+                                                 {"--background", "environment", "--env-rotate", "10"}, {"--ambient", "off"},
                                                  {"--ambient-directional", "1,1,1/1,1,1/1,0,1/0,0,0/1,1,1/1,1,1"}}) {
     Words words = {"--environment", w.sky};
     words.insert(words.end(), options.begin(), options.end());
@@ -74,5 +76,8 @@ TEST_CASE("cli: an environment that cannot be is one line and the documented exi
   w.failing(2, {"--digest", "--env-rotate", "3"}, "--environment");
   w.failing(2, {"--digest", "--environment", w.sky, "--ambient-light", "1,1,1"}, "--ambient-light");
   for (const char* value : {"-1", "nan", "1e7", "x", ""}) w.failing(2, {"--digest", "--environment", w.sky, "--env-intensity", value}, "--env-intensity");
+  w.failing(2, {"--digest", "--background", "environment"}, "needs --environment");
+  for (const char* value : {"65", "x", "nan"}) w.failing(2, {"--digest", "--exposure", value}, "--exposure");
+  w.failing(2, {"--digest", "--tonemap", "aces"}, "none|reinhard|neutral");
   for (const char* value : {"inf", "1e7", "3deg"}) w.failing(2, {"--digest", "--environment", w.sky, "--env-rotate", value}, "--env-rotate");
 }

@@ -1,7 +1,12 @@
 // The ambient light of whole frames: by node group, by direction in the world, and with every W.
 #include <catch2/catch.hpp>
 
+#include <cmath>
+#include <cstdlib>
 #include <stdexcept>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "frame_checks.h"
 
@@ -60,7 +65,7 @@ TEST_CASE("ambient frames: directions are the world's: a wall that faces +x is l
 
 namespace {
 
-// The light of a map whose radiance is 1 + 0.5 d . to.
+// A map whose radiance is 1 + 0.5 d . to.
 std::shared_ptr<const engine::Environment> lightFrom(const glm::dvec3& to) {
   raster::Parallel parallel(1);
   engine::EnvironmentMap map({engine::EnvironmentProjection::Latlong, 32, 16});
@@ -69,6 +74,7 @@ std::shared_ptr<const engine::Environment> lightFrom(const glm::dvec3& to) {
   map.fillBorders(parallel);
   auto out = std::make_shared<engine::Environment>();
   out->harmonics = engine::harmonicsOf(map, parallel);
+  out->cube = convertEnvironment(map, {engine::EnvironmentProjection::Cube, 12, 12}, parallel);
   return out;
 }
 
@@ -96,6 +102,8 @@ TEST_CASE("ambient frames: lit by an environment they have one digest for thread
   s.environment = lightFrom({0.48, 0.64, 0.6});
   s.environmentRotation = 33;
   s.environmentIntensity = 1.7;
+  s.environmentBackground = true;
+  s.tone = {post::ToneCurve::Neutral, 1.3f};
   s.ambientDirections = kSixColors;
   s.aovs = allAovs();
   s.display = true;
@@ -112,6 +120,59 @@ TEST_CASE("ambient frames: lit by an environment they have one digest for thread
             for (size_t k = 0; k < found.size(); ++k) REQUIRE(found[k].bytes == expected[k].bytes);
           }
   }
+}
+
+TEST_CASE("ambient frames: behind the scene is the environment, turned and scaled, of every pixel its own direction, crop or not") {
+  const TestScene soup = soupScene(4);
+  const engine::Scene scene = sceneFrom(soup);
+  engine::FrameSettings s = settingsOf(soup);
+  s.camera = raster::perspective(1.5, 1.4, 0.1);
+  s.camera.viewFromWorld = raster::lookAt({20, 0, 0}, {30, 3, 5}, {0, 1, 0});  // away from the scene
+  s.environment = lightFrom({0, 0, 1});
+  s.environmentBackground = true;
+  s.environmentRotation = 90;  // +z is at +x now
+  s.environmentIntensity = 3;
+  const engine::Frame whole = frameOf(scene, s);
+  const glm::dmat3 worldFromView = glm::transpose(glm::dmat3(s.camera.viewFromWorld));
+  int wrong = 0;
+  for (int y = 0; y < 50; ++y)
+    for (int x = 0; x < 70; ++x) {
+      const glm::dvec3 d = worldFromView * glm::normalize(glm::dvec3(((x + 0.5) / 35 - 1) / double(s.camera.xScale), (1 - (y + 0.5) / 25) / double(s.camera.yScale), -1));
+      wrong += !(std::fabs(whole.color.rgb[1].at(x, y) - 3 * (1 + 0.5 * d.x)) < 0.05);
+    }
+  CHECK(wrong == 0);
+  s.crop = raster::Window{31, 20, 30, 25};
+  const engine::Frame crop = frameOf(scene, s);
+  for (int y = 0; y < 25; ++y)
+    for (int x = 0; x < 30; ++x) REQUIRE(crop.color.rgb[2].at(x, y) == whole.color.rgb[2].at(x + 31, y + 20));
+  s.environment = std::make_shared<const engine::Environment>();  // without a cube
+  engine::Frame none;
+  CHECK(engine::Renderer().render(scene, s, none).error().code == engine::ErrorCode::Usage);
+}
+
+TEST_CASE("ambient frames: exposure and tone mapping change the displayed picture and not the colour") {
+  const TestScene soup = soupScene(4);
+  const engine::Scene scene = sceneFrom(soup);
+  engine::FrameSettings s = settingsOf(soup);
+  s.ambientLight = glm::vec3(3);
+  s.display = true;
+  const engine::Frame plain = frameOf(scene, s);
+  CHECK(plain.shown.rgb[0].empty());
+  for (const post::ToneSettings& tone : {post::ToneSettings{post::ToneCurve::Neutral, 1}, {post::ToneCurve::Reinhard, 1}, {post::ToneCurve::None, 0.25f}}) {
+    s.tone = tone;
+    const engine::Frame f = frameOf(scene, s);
+    CHECK(apps::planeImage(f, Aov::Color).bytes == apps::planeImage(plain, Aov::Color).bytes);
+    CHECK(apps::displayPicture(f).bytes != apps::displayPicture(plain).bytes);
+    const engine::Image fine = apps::picture(f, Aov::Color, 16);  // of the same tones
+    int wrong = 0;
+    const engine::Image bytes = apps::displayPicture(f);
+    for (size_t k = 0; k < bytes.bytes.size(); ++k) wrong += std::abs(int(fine.row<uint16_t>(0)[k]) - 257 * int(bytes.bytes[k])) > 129;
+    CHECK(wrong == 0);
+  }
+  s.tone = {};
+  s.tone.exposure = std::numeric_limits<float>::infinity();
+  engine::Frame none;
+  CHECK(engine::Renderer().render(scene, s, none).error().code == engine::ErrorCode::Usage);
 }
 
 TEST_CASE("ambient frames: the picture alone is the one of a frame with all AOVs, by every W, also of sub-pixels") {
