@@ -1,6 +1,11 @@
 #include "obscura/apps/demo_surfaces.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "obscura/apps/demo_random.h"
 #include "obscura/apps/demo_shapes.h"
+#include "obscura/raster/exact_math.h"
 
 namespace obscura::apps {
 namespace {
@@ -70,6 +75,47 @@ GlbScene makeImplicitScene() {
   inside.mesh = 1;
   inside.scale = dvec3(0.5);
   lookAt(scene, {1.5, 4.6, 8.4}, {0, 0.2, 0});
+  return scene;
+}
+
+GlbScene makeReliefScene() {
+  GlbScene scene;
+  GlbTexture map;
+  map.name = "heights";
+  map.width = map.height = 256;
+  Random random(11);
+  struct Stone {
+    double x, y, radius, height;
+  };
+  std::vector<Stone> stones;
+  for (int i = 0; i < 60; ++i) {
+    const double x = random.in(0, 256), y = random.in(0, 256), radius = random.in(8, 22);
+    stones.push_back({x, y, radius, random.in(0.5, 1)});
+  }
+  for (int y = 0; y < map.height; ++y)
+    for (int x = 0; x < map.width; ++x) {
+      constexpr double kTurn = 6.283185307179586 / 256;
+      double h = 0.15 + 0.07 * raster::exactSin(2 * kTurn * x) + 0.07 * raster::exactCos(3 * kTurn * y);
+      for (const Stone& s : stones) {
+        double dx = std::fabs(x - s.x), dy = std::fabs(y - s.y);
+        dx = std::min(dx, 256 - dx), dy = std::min(dy, 256 - dy);  // the map repeats
+        const double inside = 1 - (dx * dx + dy * dy) / (s.radius * s.radius);
+        if (inside > 0) h = std::max(h, s.height * std::sqrt(inside));
+      }
+      map.grey.push_back(uint16_t(std::min(h, 1.0) * 65535 + 0.5));
+    }
+  scene.textures.push_back(std::move(map));
+  const int floor = addMaterial(scene, "stones", {0.6, 0.55, 0.48}), block = addMaterial(scene, "block", {0.7, 0.3, 0.2});
+  scene.materials[size_t(floor)].extras = R"({"obscura_height": {"index": 0, "scale": 0.25}})";
+  scene.meshes = {makeFloor(3), makeStone(3, 200)};
+  scene.meshes[0].material = floor;
+  scene.meshes[1].material = block;
+  for (glm::vec2& uv : scene.meshes[0].uvs) uv *= 2.0f;
+  addRoot(scene, "floor", dvec3(0)).mesh = 0;
+  GlbNode& stone = addRoot(scene, "block", {0.4, 0.3, 0.2});
+  stone.mesh = 1;
+  stone.scale = dvec3(0.5);
+  lookAt(scene, {1.2, 1.5, 4.6}, {0, 0, 0.2});
   return scene;
 }
 

@@ -8,4 +8,7 @@ namespace obscura::apps {
 // One implicit surface of each kind on a floor of triangles, some of them half sunk in it; and a stone in one.
 GlbScene makeImplicitScene();
 
+// A floor that a 16-bit height map displaces, rolling with stones in it, and a block that stands on it.
+GlbScene makeReliefScene();
+
 }  // namespace obscura::apps

@@ -226,6 +226,9 @@ void addView(CLI::App& app, FrameOptions& o) {
             return color || o.environment.background;
           })
       ->group("View");
+  addChoice(app, "--displacement", {{"on", true}, {"off", false}}, o.displacement,
+            "height maps of materials move what is seen; off: these surfaces are flat")
+      ->group("View");
   addLength(app, "--separation", false, o.separation, "how far behind what is seen the AOV depth2 and the second layer begin",
             shown(engine::kDefaultSeparation) + " x R, with --layers 2 " + shown(engine::kLayerSeparation) + " x R")->group("View");
   addColor(app, "--ambient-light", o.ambientLight, "the light that comes from everywhere");
@@ -352,6 +355,7 @@ engine::Result<ResolvedFrame> FrameOptions::resolve(const engine::Scene& in) con
   out.frame.transfer.radius = float(r);
   out.frame.transfer.bias = float(bias.value_or(engine::kDefaultBias * r));
   out.frame.transfer.filterThreshold = float(filterThreshold.value_or(engine::kDefaultFilterThreshold * r));
+  out.frame.displacement = displacement;
   out.frame.separation = float(separation.value_or((transfer.layers == 2 ? engine::kLayerSeparation : engine::kDefaultSeparation) * r));
   out.raster = raster;
   out.reference = reference;

@@ -46,6 +46,7 @@ struct FrameOptions {
   std::vector<std::pair<std::string, glm::vec3>> ambientNodes;  // as in engine::LoadOptions
   EnvironmentOptions environment;
   post::ToneSettings tone;
+  bool displacement = true;
   post::Occlusion ambient = post::Occlusion::Transfer;
   post::AmbientSettings transfer;                          // but for three of the lengths below
   std::optional<double> radius, bias, filterThreshold;     // scene units; empty: a fraction of the scene's size

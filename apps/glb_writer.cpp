@@ -114,6 +114,7 @@ Json materialJson(const GlbMaterial& material) {
     json["alphaCutoff"] = material.alphaCutoff;
   }
   if (material.doubleSided) json["doubleSided"] = true;
+  if (!material.extras.empty()) json["extras"] = Json::parse(material.extras);
   return json;
 }
 
@@ -155,11 +156,17 @@ void putPngChunk(Bytes& out, const char (&type)[5], const Bytes& data) {
 }  // namespace
 
 std::vector<uint8_t> storedPng(const GlbTexture& texture) {
-  const size_t rowBytes = size_t(texture.width) * 4;
+  const bool grey = !texture.grey.empty();
+  Bytes pixels = texture.rgba;
+  for (uint16_t v : texture.grey) {
+    pixels.push_back(uint8_t(v >> 8));
+    pixels.push_back(uint8_t(v & 0xFF));
+  }
+  const size_t rowBytes = size_t(texture.width) * (grey ? 2 : 4);
   Bytes raw;
   for (int y = 0; y < texture.height; ++y) {
     raw.push_back(0);  // filter: none
-    const auto row = texture.rgba.begin() + std::ptrdiff_t(size_t(y) * rowBytes);
+    const auto row = pixels.begin() + std::ptrdiff_t(size_t(y) * rowBytes);
     raw.insert(raw.end(), row, row + std::ptrdiff_t(rowBytes));
   }
   Bytes zlib = {0x78, 0x01};
@@ -181,7 +188,7 @@ std::vector<uint8_t> storedPng(const GlbTexture& texture) {
   Bytes header;
   putBig(header, uint32_t(texture.width));
   putBig(header, uint32_t(texture.height));
-  header.insert(header.end(), {8, 6, 0, 0, 0});  // 8 bits, RGBA, not interlaced
+  header.insert(header.end(), {uint8_t(grey ? 16 : 8), uint8_t(grey ? 0 : 6), 0, 0, 0});  // bits, grey or RGBA, not interlaced
   Bytes out = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
   putPngChunk(out, "IHDR", header);
   putPngChunk(out, "IDAT", zlib);

@@ -15,6 +15,7 @@ struct GlbTexture {  // becomes an embedded PNG, repeated in both directions, wi
   std::string name;
   int width = 0, height = 0;
   std::vector<uint8_t> rgba;  // sRGB and straight alpha, row 0 on top
+  std::vector<uint16_t> grey; // instead of it: linear, 16 bits
 };
 
 struct GlbMaterial {
@@ -23,6 +24,7 @@ struct GlbMaterial {
   int texture = -1;         // into GlbScene::textures
   double alphaCutoff = 0;   // above 0: alphaMode MASK
   bool doubleSided = false;
+  std::string extras;       // JSON, or empty
 };
 
 struct GlbMesh {
@@ -61,7 +63,7 @@ struct GlbScene {
 
 std::vector<uint8_t> glbFromScene(const GlbScene& scene);
 
-// A PNG of 8-bit RGBA whose data are stored, not compressed: its bytes depend on no library's version.
+// A PNG of 8-bit RGBA or 16-bit grey whose data are stored, not compressed: its bytes depend on no library's version.
 std::vector<uint8_t> storedPng(const GlbTexture& texture);
 
 }  // namespace obscura::apps

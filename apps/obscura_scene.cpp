@@ -18,7 +18,8 @@ int main(int argc, char** argv) {
     const char *name, *what;
     apps::GlbScene (*make)();
   } kScenes[] = {{"demo", "a tree with stones on uneven ground, some 120,000 triangles", apps::makeDemoScene},
-                 {"implicit", "implicit surfaces of each kind on a floor of triangles", apps::makeImplicitScene}};
+                 {"implicit", "implicit surfaces of each kind on a floor of triangles", apps::makeImplicitScene},
+                 {"relief", "a floor that a height map displaces", apps::makeReliefScene}};
   for (const auto& scene : kScenes)
     app.add_subcommand(scene.name, scene.what)->add_option("-o,--output", output, "the .glb file to write; - is standard output")->required();
   try {

@@ -77,6 +77,7 @@ Needs needsOf(const Scene& scene, const FrameSettings& s) {
   n.planes.albedo = wants(Aov::Albedo) || n.albedo || lights;
   n.planes.emissive = wants(Aov::Emissive) || (lights && emits(scene));
   n.planes.position = wants(Aov::Position);
+  n.planes.relief = n.sums && s.displacement && !scene.heightMaps.empty();
   n.planes.triangle = wants(Aov::Triangle);
   n.planes.instance = wants(Aov::Instance) || (lights && hasAmbientGroups(scene));
   n.planes.material = wants(Aov::Material);
@@ -125,6 +126,8 @@ struct Renderer::State {
   std::vector<raster::MeshView> meshes;
   std::vector<raster::Instance> instances;
   std::vector<raster::TextureView> textures;
+  std::vector<raster::HeightView> heights;
+  std::vector<raster::Material> flat;           // without height maps, where the frame wants none
   std::vector<glm::vec3> ambientOfInstances;
   post::AmbientLight ambient;
   post::LinearColor radiance;  // of what is drawn, for the transfer that reads it
@@ -145,7 +148,7 @@ struct Renderer::State {
   State(const raster::Settings& s, bool ref)
       : settings(s), reference(ref), target(raster::chooseTarget(s.target)), rasterizer(s), parallel(ref ? 1 : s.threads) {}
 
-  raster::DrawList drawList(const Scene& scene);
+  raster::DrawList drawList(const Scene& scene, bool displacement);
   void rasterize(const raster::DrawList& list, const FrameSettings& s, const raster::PlaneSet& planes, const raster::Window& w,
                  raster::GBuffer& out);
   raster::Window windowToDraw(const raster::DrawList& list, const FrameSettings& s, const Needs& needs);
@@ -176,14 +179,19 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
-raster::DrawList Renderer::State::drawList(const Scene& scene) {
+raster::DrawList Renderer::State::drawList(const Scene& scene, bool displacement) {
   meshes.clear();
   instances.clear();
   textures.clear();
   for (const Mesh& m : scene.meshes) meshes.push_back(m.view());
   for (const Instance& i : scene.instances) instances.push_back({&meshes[i.mesh], scene.meshes[i.mesh].material, i.worldFromObject});
   for (const Texture& t : scene.textures) textures.push_back(t.view);
-  return {instances, scene.materials, textures, scene.implicits};
+  heights.clear();
+  for (const HeightMap& h : scene.heightMaps) heights.push_back(h.view);
+  if (displacement) return {instances, scene.materials, textures, scene.implicits, heights};
+  flat = scene.materials;
+  for (raster::Material& m : flat) m.heightMap.texture = -1;
+  return {instances, flat, textures, scene.implicits};
 }
 
 void Renderer::State::rasterize(const raster::DrawList& list, const FrameSettings& s, const raster::PlaneSet& planes,
@@ -204,7 +212,7 @@ raster::Window Renderer::State::windowToDraw(const raster::DrawList& list, const
 }
 
 void Renderer::State::drawGBuffer(const Scene& scene, const FrameSettings& s, const Needs& needs, Frame& out) {
-  const raster::DrawList list = drawList(scene);
+  const raster::DrawList list = drawList(scene, s.displacement);
   const raster::Window output = outputWindow(s);
   window = windowToDraw(list, s, needs);
   part = {output.x - window.x, output.y - window.y, output.width, output.height};
@@ -259,6 +267,7 @@ void Renderer::State::drawTransfer(const FrameSettings& s, const Needs& needs, F
     post::TransferInput in{&g, post::makeProjector(s.camera, s.width, s.height, window), s.transfer, post::transferSamples(s.transfer)};
     if (!needs.albedo && !needs.radiance) in.settings.albedo = post::TransferAlbedo::Own;  // for O, which reads none
     in.implicits = implicits;
+    in.heights = heights;
     if (needs.radiance) {
       radiance = post::makeLinearColor(g.width, g.height, std::move(radiance));
       const post::LightInput first{&g, nullptr, post::Occlusion::None, ambient, glm::vec3(0)};

@@ -48,6 +48,7 @@ struct FrameSettings {
   post::ToneSettings tone;             // of the displayed picture alone
   std::vector<Aov> aovs = {Aov::Color};
   bool display = false;           // also the picture as sRGB bytes
+  bool displacement = true;       // false: materials are flat, whatever height map they have
   float separation = 0.01f;       // of Aov::Depth2, scene units, see raster::GBuffer
 };
 

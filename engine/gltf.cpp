@@ -61,6 +61,7 @@ class Assembly {
     scene_.materials = std::move(materials.materials);
     scene_.materialNames = std::move(materials.names);
     scene_.textures = std::move(materials.textures);
+    scene_.heightMaps = std::move(materials.heightMaps);
     needs_ = std::move(materials.needs);
   }
 

@@ -24,7 +24,8 @@ std::array<float, 6> uvTransform(const tinygltf::Value& extension) {
 
 class MaterialReader {
  public:
-  MaterialReader(Document& document, TextureLoader& textures) : document_(document), textures_(textures) {}
+  MaterialReader(Document& document, TextureLoader& textures, HeightLoader& heights)
+      : document_(document), textures_(textures), heights_(heights) {}
 
   raster::Material read(const tinygltf::Material& in, const std::string& path, bool isUsed) {
     raster::Material m;
@@ -43,6 +44,7 @@ class MaterialReader {
     if (isUsed && (all || m.alphaMode == raster::AlphaMode::Mask))
       m.baseColorMap = readSlot(pbr.baseColorTexture, true, path + "/pbrMetallicRoughness/baseColorTexture");
     if (isUsed && all) readOtherTextures(in, path, m);
+    if (isUsed) readHeight(in, path + "/extras/obscura_height", m);
     return m;
   }
 
@@ -76,8 +78,29 @@ class MaterialReader {
     needs_.tangents = m.normalMap.texture >= 0;
   }
 
+  // It decides what is seen where, so it is always needed.
+  void readHeight(const tinygltf::Material& in, const std::string& path, raster::Material& m) {
+    if (!in.extras.IsObject() || !in.extras.Has("obscura_height")) return;
+    const tinygltf::Value& extras = in.extras.Get("obscura_height");
+    tinygltf::TextureInfo info;
+    info.index = extras.Get("index").GetNumberAsInt();
+    if (extras.Has("texCoord")) info.texCoord = extras.Get("texCoord").GetNumberAsInt();
+    if (extras.Has("extensions"))
+      for (const std::string& name : extras.Get("extensions").Keys()) info.extensions[name] = extras.Get("extensions").Get(name);
+    const double scale = extras.Get("scale").GetNumberAsDouble();
+    if (!(scale >= 0 && scale <= 1e15)) fail(path + "/scale", "below 0 or above 10^15");
+    m.heightScale = float(scale);
+    m.heightMap = readSlot(info, [&] { return heights_.request(info.index, path); });
+  }
+
   template <class Info>
   TextureSlot readSlot(const Info& info, bool srgb, const std::string& path) {
+    return readSlot(info, [&] { return textures_.request(info.index, srgb, path); });
+  }
+
+  // request: gives the texture its number in the scene.
+  template <class Info, class Request>
+  TextureSlot readSlot(const Info& info, const Request& request) {
     TextureSlot slot;
     if (info.index < 0) return slot;
     int texCoord = info.texCoord;
@@ -91,7 +114,7 @@ class MaterialReader {
       document_.warnings.add("of a material's texture coordinate sets only the first two are read");
       return {};
     }
-    slot.texture = textures_.request(info.index, srgb, path);
+    slot.texture = request();
     return slot;
   }
 
@@ -106,6 +129,7 @@ class MaterialReader {
 
   Document& document_;
   TextureLoader& textures_;
+  HeightLoader& heights_;
   VertexNeeds needs_;
 };
 
@@ -114,9 +138,10 @@ class MaterialReader {
 Materials readMaterials(Document& document, const std::vector<bool>& used) {
   Materials result;
   TextureLoader textures(document);
+  HeightLoader heights(document);
   const std::vector<tinygltf::Material>& materials = document.model.materials;
   for (size_t i = 0; i < materials.size(); ++i) {
-    MaterialReader reader(document, textures);
+    MaterialReader reader(document, textures, heights);
     result.materials.push_back(reader.read(materials[i], pointer("/materials", i), used[i]));
     result.names.push_back(materials[i].name);
     result.needs.push_back(reader.needs());
@@ -125,6 +150,7 @@ Materials readMaterials(Document& document, const std::vector<bool>& used) {
   result.names.emplace_back("default");
   result.needs.emplace_back();
   result.textures = textures.load();
+  result.heightMaps = std::move(heights.heightMaps);
   return result;
 }
 

@@ -16,6 +16,25 @@ struct Materials {
   std::vector<std::string> names;
   std::vector<VertexNeeds> needs;           // alike
   std::vector<Texture> textures;
+  std::vector<HeightMap> heightMaps;
+};
+
+// The image of a texture, -1 with a warning where it has none; and its sampler.
+int imageOf(Document& document, int texture, const std::string& user);
+raster::TextureView samplerOf(const Document& document, int texture);
+
+// Decodes the height maps of materials: the first channel of an image, in its own depth.
+class HeightLoader {
+ public:
+  explicit HeightLoader(Document& document) : document_(document) {}
+  // The index the map has in the scene, or -1 with a warning: the file names no image for it.
+  int request(int texture, const std::string& user);
+  std::vector<HeightMap> heightMaps;
+
+ private:
+  Document& document_;
+  std::map<int, int> known_;  // by texture
+  uint64_t bytes_ = 0;
 };
 
 // `used[i]`: material i of the file is drawn; the textures of others are not looked at. Images are decoded in

@@ -66,13 +66,16 @@ constexpr Field kMetallicRoughness[] = {
     numbers("baseColorFactor", 4), object("baseColorTexture", kTextureInfo), optional("metallicFactor", Kind::Number),
     optional("roughnessFactor", Kind::Number), object("metallicRoughnessTexture", kTextureInfo)};
 constexpr Field kEmissiveStrength[] = {optional("emissiveStrength", Kind::Number)};
+constexpr Field kHeight[] = {required("index", Kind::Index), optional("texCoord", Kind::Index), required("scale", Kind::Number),
+                             extensions(kTextureExtensions)};
+constexpr Field kMaterialExtras[] = {object("obscura_height", kHeight)};
 constexpr Field kMaterialExtensions[] = {object("KHR_materials_unlit", {}),
                                          object("KHR_materials_emissive_strength", kEmissiveStrength)};
 constexpr Field kMaterial[] = {
     optional("name", Kind::String), object("pbrMetallicRoughness", kMetallicRoughness),
     object("normalTexture", kTextureInfo), object("emissiveTexture", kTextureInfo), numbers("emissiveFactor", 3),
     optional("alphaMode", Kind::String), optional("alphaCutoff", Kind::Number),
-    optional("doubleSided", Kind::Boolean), extensions(kMaterialExtensions)};
+    optional("doubleSided", Kind::Boolean), extensions(kMaterialExtensions), extras(kMaterialExtras)};
 
 constexpr Field kSparseIndices[] = {required("bufferView", Kind::Index), optional("byteOffset", Kind::Index),
                                     required("componentType", Kind::Index)};
@@ -95,7 +98,7 @@ constexpr Field kMesh[] = {optional("name", Kind::String),
                            extensions({})};
 constexpr Field kInstancing[] = {required("attributes", Kind::IndexMap)};
 constexpr Field kNodeExtensions[] = {object("EXT_mesh_gpu_instancing", kInstancing)};
-// The loader's own, in the extras of a node; which members a type of surface needs is for whoever reads it.
+// The loader's own, in the extras of a node (and above, of a material); which members a type needs is for whoever reads it.
 constexpr Field kBall[] = {numbers("center", 3), required("radius", Kind::Number)};
 constexpr Field kImplicit[] = {
     required("type", Kind::String), optional("material", Kind::Index), optional("radius", Kind::Number), optional("tube", Kind::Number),

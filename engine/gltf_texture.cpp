@@ -66,24 +66,33 @@ std::vector<uint32_t> packed(const Image& image) {
 
 }  // namespace
 
-int TextureLoader::request(int texture, bool srgb, const std::string& user) {
-  const tinygltf::Model& model = document_.model;
-  const tinygltf::Texture& t = at(model.textures, texture, "texture", user + "/index");
-  const std::string path = pointer("/textures", uint64_t(texture));
-  if (t.source < 0 || document_.images.empty()) {
-    document_.warnings.add("textures without an image are ignored");
+int imageOf(Document& document, int texture, const std::string& user) {
+  const tinygltf::Texture& t = at(document.model.textures, texture, "texture", user + "/index");
+  if (t.source < 0 || document.images.empty()) {
+    document.warnings.add("textures without an image are ignored");
     return -1;
   }
-  const Source& image = at(document_.images, t.source, "image", path + "/source");
-  raster::TextureView view;
-  if (t.sampler >= 0) {
-    view = samplerOf(at(model.samplers, t.sampler, "sampler", path + "/sampler"),
-                     pointer("/samplers", uint64_t(t.sampler)));
-  }
-  ImageJob& job = jobs_[t.source];
+  at(document.images, t.source, "image", pointer("/textures", uint64_t(texture)) + "/source");
+  return t.source;
+}
+
+raster::TextureView samplerOf(const Document& document, int texture) {
+  const int sampler = document.model.textures[size_t(texture)].sampler;
+  if (sampler < 0) return {};
+  return samplerOf(at(document.model.samplers, sampler, "sampler", pointer("/textures", uint64_t(texture)) + "/sampler"),
+                   pointer("/samplers", uint64_t(sampler)));
+}
+
+int TextureLoader::request(int texture, bool srgb, const std::string& user) {
+  const int source = imageOf(document_, texture, user);
+  if (source < 0) return -1;
+  const std::string path = pointer("/textures", uint64_t(texture));
+  const Source& image = document_.images[size_t(source)];
+  raster::TextureView view = samplerOf(document_, texture);
+  ImageJob& job = jobs_[source];
   if (job.variants.empty()) {
-    job.path = pointer("/images", uint64_t(t.source));
-    job.encoded = document_.imageBytes(t.source, path + "/source");
+    job.path = pointer("/images", uint64_t(source));
+    job.encoded = document_.imageBytes(source, path + "/source");
     job.name = !image.name.empty() ? image.name : image.hasUri && !isDataUri(image.uri) ? image.uri : job.path;
   }
   view.srgb = srgb;
@@ -94,9 +103,9 @@ int TextureLoader::request(int texture, bool srgb, const std::string& user) {
   if (variant == job.variants.end()) job.variants.push_back({srgb, mips, 0, 0, 1, nullptr});
   for (size_t i = 0; i < requests_.size(); ++i) {
     const Request& r = requests_[i];
-    if (r.image == t.source && r.texels == texels && sameSampler(r.view, view)) return int(i);
+    if (r.image == source && r.texels == texels && sameSampler(r.view, view)) return int(i);
   }
-  requests_.push_back({t.source, texels, view});
+  requests_.push_back({source, texels, view});
   return int(requests_.size() - 1);
 }
 

@@ -158,6 +158,12 @@ Result<Image> decodeImageRgba8(raster::Span<const uint8_t> file, const std::stri
   return outOfMemory(ErrorCode::BadInput, name);
 }
 
+Result<Image> decodeImage(Bytes file, const std::string& name, const DecodeLimits& limits) try {
+  return mainLayer(decodeLayers(file, name, limits), name);
+} catch (const std::bad_alloc&) {
+  return outOfMemory(ErrorCode::BadInput, name);
+}
+
 Result<Image> readImage(const std::string& path, const DecodeLimits& limits) {
   return mainLayer(readLayers(path, limits), path);
 }

@@ -49,6 +49,13 @@ struct Texture {
   raster::TextureView view;
 };
 
+// A decoded height map; `view` points into `heights`, see Texture.
+struct HeightMap {
+  std::string name;
+  std::shared_ptr<const std::vector<float>> heights;
+  raster::HeightView view;
+};
+
 struct SceneCamera {
   std::string name;
   glm::dmat4 worldFromView{1.0};  // rigid: the node's scale is taken out
@@ -68,6 +75,7 @@ struct Scene {
   std::vector<raster::Material> materials;  // at least one; from a file: as numbered there, then the default one
   std::vector<std::string> materialNames;
   std::vector<Texture> textures;
+  std::vector<HeightMap> heightMaps;
   std::vector<Instance> instances;  // in the order of the node tree, depth first
   // From a file: what nodes have as extras, in the same order. A program may add its own, functions included.
   std::vector<raster::ImplicitSurface> implicits;

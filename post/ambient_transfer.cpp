@@ -54,7 +54,7 @@ class Kernel {
  public:
   Kernel(const TransferInput& in, TransferSums& out)
       : in_(in), g_(*in.g), read_(occluderPlanes(in)), out_(out), map_(in), points_(in, in.settings.steps), reach_(points_.all()),
-        implicits_(in, reach_) {}
+        implicits_(in, reach_), relief_(in) {}
 
   TransferStatistics rows(int y0, int y1) {
     if (in_.bounds) blocks_.resize(size_t(in_.bounds->c.width()));
@@ -117,10 +117,15 @@ class Kernel {
       const VF z = hn::IfThenElse(seen[v], hn::LoadU(d, g_.depth.row(y) + x + v * kLanes), infinity);
       place(pixels[v], x + v * kLanes, y, z);
     }
-    if (kMore) implicits_.choose(pixels, seen, kVectors);
+    bool alone = true;  // with the depth map
+    if (kMore) {
+      implicits_.choose(pixels, seen, kVectors);
+      alone = !implicits_.any();
+      for (int v = 0; v < kVectors; ++v) alone = !relief_.choose(x + v * kLanes, y) && alone;
+    }
     if (in_.bounds) {
       const OpenBlock& block = blocks_[size_t(x / kSegment)];
-      bool known = block.known && !(kMore && implicits_.any());
+      bool known = block.known && alone;
       for (int v = 0; v < kVectors && known; ++v) {
         const MF outer = knownOpen<kPerspective>(block, reach_, pixels[v].position, pixels[v].n, in_.settings.bias);
         known = hn::AllTrue(d, hn::Or(hn::Not(seen[v]), outer));
@@ -135,6 +140,7 @@ class Kernel {
     for (int v = 0; v < kVectors; ++v) {
       setFrame(pixels[v]);
       if (Points::kTurned) turnFrame(pixels[v], hn::LoadU(d, cosines_ + v * kLanes), hn::LoadU(d, sines_ + v * kLanes));
+      if (kMore) relief_.choose(x + v * kLanes, y);
       const VF outer = outerRays(pixels[v], x + v * kLanes);
       open &= uint8_t(hn::AllTrue(d, hn::Eq(outer, all)));
       hn::StoreU(outer, d, numerator + v * kLanes);
@@ -181,14 +187,14 @@ class Kernel {
       VI met = hn::Zero(di);
       for (size_t k = 0; k < steps; ++k, ++point) {
         const V3 xyz = points_.at(point, x);
-        auto shifted = [&](VF p, VF t, VF b, VF n) HWY_ATTR {
-          return hn::Add(p, hn::Add(hn::Add(hn::Mul(xyz.x, t), hn::Mul(xyz.y, b)), hn::Mul(xyz.z, n)));
+        auto shift = [&](VF t, VF b, VF n) HWY_ATTR {
+          return hn::Add(hn::Add(hn::Mul(xyz.x, t), hn::Mul(xyz.y, b)), hn::Mul(xyz.z, n));
         };
-        const V3 p{shifted(at.position.x, at.t.x, at.b.x, at.n.x), shifted(at.position.y, at.t.y, at.b.y, at.n.y),
-                   shifted(at.position.z, at.t.z, at.b.z, at.n.z)};
+        const V3 o{shift(at.t.x, at.b.x, at.n.x), shift(at.t.y, at.b.y, at.n.y), shift(at.t.z, at.b.z, at.n.z)};
+        const V3 p{hn::Add(at.position.x, o.x), hn::Add(at.position.y, o.y), hn::Add(at.position.z, o.z)};
         const VI texel = map_.texelOf(p);
         MF inner = map_.inner(p.z, texel);
-        if (kMore) inner = hn::Or(inner, implicits_.inner(p));
+        if (kMore) inner = hn::Or(inner, hn::Or(implicits_.inner(p), relief_.inner(o)));
         met = kOneStep ? texel : hn::IfThenElse(hn::RebindMask(di, hn::AndNot(hit, inner)), texel, met);
         hit = kOneStep ? inner : hn::Or(hit, inner);
       }
@@ -216,6 +222,7 @@ class Kernel {
   Points points_;
   const Reach reach_;
   Implicits implicits_;
+  HeightField relief_;
   std::vector<OpenBlock> blocks_;  // of the row of cells
   TransferStatistics statistics_;
   HWY_ALIGN float cosines_[kSegment], sines_[kSegment];  // the row's rotations
@@ -228,7 +235,7 @@ class Kernel {
 
 template <bool kPerspective, bool kOneStep, bool kReads>
 TransferStatistics transferRows(const TransferInput& in, int y0, int y1, TransferSums& out) {
-  const bool more = !in.implicits.empty();
+  const bool more = !in.implicits.empty() || (!in.heights.empty() && !in.g->heightMap.empty());
   if (in.settings.estimator != Estimator::Paper)
     return more ? Kernel<DealtPoints, kPerspective, kOneStep, kReads, true>(in, out).rows(y0, y1)
                 : Kernel<DealtPoints, kPerspective, kOneStep, kReads, false>(in, out).rows(y0, y1);

@@ -56,6 +56,8 @@ struct TransferInput {
   // Surfaces whose inside is known, seen from the same camera: what lies in a single-sided one is inside, whatever the depth map says
   // (containment-inl.h). So they occlude where they are hidden, off screen, or farther than R behind what hides them.
   raster::Span<const raster::ImplicitDraw> implicits = {};
+  // Of what is displaced, where the G-buffer has the relief planes: what lies below its own height map is inside, too.
+  raster::Span<const raster::HeightView> heights = {};
 };
 
 // Allocates what the settings need; std::invalid_argument if the radiance is needed and is not there or of another size,

@@ -9,9 +9,22 @@
 #include "obscura/post/line_samples.h"
 #include "obscura/post/sample_sets.h"
 #include "obscura/raster/float_environment.h"
+#include "obscura/raster/relief.h"
 
 namespace obscura::post {
 namespace {
+
+// Below the height map that displaces the pixel, at an offset from its point.
+bool belowRelief(const TransferInput& in, int x, int y, const glm::vec3& offset) {
+  const raster::GBuffer& g = *in.g;
+  if (in.heights.empty() || g.heightMap.empty() || g.heightMap.at(x, y) == raster::kNoTriangle) return false;
+  glm::vec3 p;
+  for (int c = 0; c < 3; ++c) {
+    const raster::Plane<float>* gradient = g.relief + 3 * c + 3;
+    p[c] = g.relief[c].at(x, y) + (offset.x * gradient[0].at(x, y) + offset.y * gradient[1].at(x, y) - offset.z * gradient[2].at(x, y));
+  }
+  return p.z < raster::ref::heightAt(in.heights[g.heightMap.at(x, y)], p.x, p.y);
+}
 
 // f(p) < 0 for some surface; view space has z towards the eye.
 bool insideImplicit(const TransferInput& in, const glm::vec3& p) {
@@ -62,7 +75,7 @@ void shade(const TransferInput& in, int x, int y, TransferSums& out) {
     Texel occluder{};
     for (int k = 1; k <= s.steps && outer; ++k) {
       const glm::vec3 o = xyz * (float(k) / float(s.steps));
-      const glm::vec3 scPos = cPos + (T1 * o.x + B1 * o.y + N * o.z);
+      const glm::vec3 shift = T1 * o.x + B1 * o.y + N * o.z, scPos = cPos + shift;
       occluder = project(projector, scPos);
       const float behind = scPos.z - g.depth.at(occluder.x, occluder.y);
       const float deepest = s.silhouetteBound ? s.radius : std::numeric_limits<float>::infinity();
@@ -71,7 +84,8 @@ void shade(const TransferInput& in, int x, int y, TransferSums& out) {
         const float behind2 = scPos.z - g.depth2.at(occluder.x, occluder.y);
         within = within || (behind2 > s.bias && behind2 < kHiddenThickness * s.radius);
       }
-      outer = !(behind > s.bias && within && scPos.z > projector.zNear) && !insideImplicit(in, scPos);
+      outer = !(behind > s.bias && within && scPos.z > projector.zNear) && !insideImplicit(in, scPos) &&
+              !belowRelief(in, x, y, shift);
     }
     if (outer) num += 1;
     else

@@ -1,5 +1,6 @@
 // Per target: I(p), whether a test point is outside. Two ways to decide it, and their product where both apply:
 //   depth map          inside exactly when bias < z - z* < R, z* the depth stored where p projects
+//   height field       inside where p_z < h(p_x, p_y), p in the space of the height map that displaces the pixel
 //   implicit surface   inside where f(p) < 0; what is double-sided has no inside
 // (long paper, section 2.) Each has `inner`; a point is inside where either says so.
 #if defined(OBSCURA_POST_CONTAINMENT_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -15,6 +16,7 @@
 #include "obscura/post/depth_map-inl.h"
 #include "obscura/post/open_block-inl.h"
 #include "obscura/post/vector-inl.h"
+#include "obscura/raster/height-inl.h"
 #include "obscura/raster/implicit-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -24,6 +26,49 @@ namespace HWY_NAMESPACE {
 // Where the pixels of a vector are, and their frame.
 struct Pixels {
   V3 position, t, b, n;
+};
+
+// The height map of a vector of displaced pixels as the containment test sees it. It knows nothing of other surfaces.
+class HeightField {
+ public:
+  explicit HeightField(const TransferInput& in) : g_(*in.g), heights_(in.heights) {}
+
+  // Whether one of the pixels x ... of row y is displaced; `inner` is then for these.
+  HWY_INLINE bool choose(int x, int y) {
+    const DI d;
+    if (heights_.empty() || g_.heightMap.empty()) return false;
+    x_ = x;
+    y_ = y;
+    any_ = !hn::AllTrue(d, hn::Eq(map(), hn::Set(d, -1)));
+    return any_;
+  }
+
+  // offset: from the pixel's point to the test point, z away from the eye.
+  HWY_INLINE MF inner(const V3& offset) const {
+    const DF d;
+    MF inside = hn::Lt(hn::Zero(d), hn::Zero(d));
+    if (!any_) return inside;
+    const auto plane = [&](int k) HWY_ATTR { return hn::LoadU(d, g_.relief[k].row(y_) + x_); };
+    const auto moved = [&](int k) HWY_ATTR {
+      const VF xy = hn::Add(hn::Mul(offset.x, plane(3 * k + 3)), hn::Mul(offset.y, plane(3 * k + 4)));
+      return hn::Add(plane(k), hn::Sub(xy, hn::Mul(offset.z, plane(3 * k + 5))));
+    };
+    const VF u = moved(0), v = moved(1), height = moved(2);
+    for (size_t k = 0; k < heights_.size(); ++k) {
+      const MF mine = hn::RebindMask(d, hn::Eq(map(), hn::Set(DI(), int32_t(k))));
+      if (hn::AllFalse(d, mine)) continue;
+      inside = hn::Or(inside, hn::And(mine, hn::Lt(height, raster::HWY_NAMESPACE::heightAt(heights_[k], u, v))));
+    }
+    return inside;
+  }
+
+ private:
+  HWY_INLINE VI map() const { return hn::LoadU(DI(), reinterpret_cast<const int32_t*>(g_.heightMap.row(y_) + x_)); }
+
+  const raster::GBuffer& g_;
+  raster::Span<const raster::HeightView> heights_;
+  bool any_ = false;
+  int x_ = 0, y_ = 0;
 };
 
 // Implicit surfaces as the containment test sees them: f in float, at p in their object space.

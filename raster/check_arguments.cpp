@@ -34,6 +34,12 @@ void checkTexture(const TextureView& t, size_t index) {
   if (t.texels.size() < texels) fail("texture ", index, " holds ", t.texels.size(), " texels of ", texels);
 }
 
+void checkHeights(const HeightView& h, size_t index) {
+  if (h.width < 1 || h.height < 1 || h.width > 32768 || h.height > 32768)
+    fail("height map ", index, " has ", h.width, " x ", h.height, " heights, not 1 ... 32768");
+  if (h.heights.size() < size_t(h.width) * size_t(h.height)) fail("height map ", index, " holds only ", h.heights.size(), " heights");
+}
+
 void checkMesh(const MeshView& m, size_t instance) {
   const size_t n = m.positions.size();
   if (n > 0x20000000u || m.indices.size() > 0x7FFFFFFFu)
@@ -82,6 +88,14 @@ void checkArguments(const DrawList& list, const Camera& c, int width, int height
     for (const TextureSlot* s : {&list.materials[k].baseColorMap, &list.materials[k].metallicRoughnessMap,
                                  &list.materials[k].normalMap, &list.materials[k].emissiveMap})
       checkSlot(*s, list.textures.size(), k);
+  for (size_t k = 0; k < list.heights.size(); ++k) checkHeights(list.heights[k], k);
+  for (size_t k = 0; k < list.materials.size(); ++k) {
+    const Material& m = list.materials[k];
+    if (m.heightMap.texture < 0) continue;
+    if (size_t(m.heightMap.texture) >= list.heights.size() || m.heightMap.uvSet < 0 || m.heightMap.uvSet > 1)
+      fail("material ", k, " uses height map ", m.heightMap.texture, " of ", list.heights.size(), " with uv set ", m.heightMap.uvSet);
+    if (!(m.heightScale >= 0 && m.heightScale <= 1e15f)) fail("material ", k, " has a height of ", m.heightScale);
+  }
   uint64_t triangles = 0;
   const MeshView* last = nullptr;
   for (size_t k = 0; k < list.instances.size(); ++k) {

@@ -26,6 +26,7 @@ struct DrawList {
   Span<const Material> materials;
   Span<const TextureView> textures;
   Span<const ImplicitSurface> implicits = {};
+  Span<const HeightView> heights = {};
 };
 
 constexpr uint32_t kNoTriangle = 0xFFFFFFFFu;  // in the id planes: nothing was drawn there

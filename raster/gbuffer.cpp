@@ -18,13 +18,16 @@ GBuffer::GBuffer(int w, int h, const PlaneSet& planes) : width(w), height(h) {
   make(planes.material, material);
   make(planes.depth2, depth2);
   make(planes.depthBack, depthBack);
+  make(planes.relief, heightMap);
+  for (Plane<float>& plane : relief) make(planes.relief, plane);
 }
 
 bool GBuffer::has(const PlaneSet& planes) const {
   return planes.depth != depth.empty() && planes.normal != normal[0].empty() && planes.albedo != albedo[0].empty() &&
          planes.emissive != emissive[0].empty() && planes.position != position[0].empty() &&
          planes.triangle != triangle.empty() && planes.instance != instance.empty() &&
-         planes.material != material.empty() && planes.depth2 != depth2.empty() && planes.depthBack != depthBack.empty();
+         planes.material != material.empty() && planes.depth2 != depth2.empty() && planes.depthBack != depthBack.empty() &&
+         planes.relief != heightMap.empty();
 }
 
 void cutOut(const GBuffer& from, const Window& part, GBuffer& to) {
@@ -42,6 +45,8 @@ void cutOut(const GBuffer& from, const Window& part, GBuffer& to) {
   cutOut(from.material, part, to.material);
   cutOut(from.depth2, part, to.depth2);
   cutOut(from.depthBack, part, to.depthBack);
+  cutOut(from.heightMap, part, to.heightMap);
+  for (int k = 0; k < 12; ++k) cutOut(from.relief[k], part, to.relief[k]);
 }
 
 }  // namespace obscura::raster

@@ -16,10 +16,11 @@ struct PlaneSet {
   bool triangle = false, instance = false, material = false;
   bool depth2 = false, depthBack = false;
   float separation = 0;  // of depth2: scene units, positive and finite; not read without it
+  bool relief = false;   // for the transfer of displaced surfaces
 
   // Nothing but depths: ids, normals and materials are not even kept per pixel, alpha is tested all the same.
   bool depthsAlone() const {
-    return !(normal || albedo || emissive || position || triangle || instance || material);
+    return !(normal || albedo || emissive || position || triangle || instance || material || relief);
   }
 };
 
@@ -47,6 +48,11 @@ struct GBuffer {
   Plane<uint32_t> material;  // index into DrawList::materials
   Plane<float> depth2;       // zView of the nearest surface at least `separation` behind the first
   Plane<float> depthBack;    // zView of the nearest surface at or behind the first that is turned away
+  // Of displaced surfaces (relief.h), what their height map needs to decide what lies inside. A point at an offset o
+  // from the pixel's (view space) is at relief[0 ... 2] + (o . relief[3 ... 5], o . relief[6 ... 8], o . relief[9 ... 11]) in
+  // the space of the map: u, v, height.
+  Plane<uint32_t> heightMap;  // index into DrawList::heights; kNoTriangle where nothing is displaced
+  Plane<float> relief[12];    // 0 there
 
   GBuffer() = default;
   GBuffer(int width, int height, const PlaneSet& planes);

@@ -43,6 +43,9 @@ inline void storeHit(const View& view, const ImplicitDraw& s, const TileBuffers&
   storeId(s.id, x, y, out.triangle);
   storeId(s.instance, x, y, out.instance);
   storeId(s.materialIndex, x, y, out.material);
+  storeId(kNoTriangle, x, y, out.heightMap);
+  for (Plane<float>& plane : out.relief)
+    if (!plane.empty()) plane.at(x, y) = 0;
 }
 
 // Into a layer behind the first.

@@ -28,6 +28,13 @@ struct TextureView {
   MipFilter mip = MipFilter::Linear;
 };
 
+// A height map: heights 0 ... 1, row 0 first (v = 0), linear between their centres.
+struct HeightView {
+  Span<const float> heights;
+  int width = 0, height = 0;  // 1 ... 32768
+  Wrap wrapU = Wrap::Repeat, wrapV = Wrap::Repeat;
+};
+
 // A use of a texture: u' = m00 u + m01 v + m02, v' = m10 u + m11 v + m12 (KHR_texture_transform).
 struct TextureSlot {
   int texture = -1;  // index into the frame's textures; -1: none
@@ -50,6 +57,8 @@ struct Material {
   bool doubleSided = false;
   bool unlit = false;  // KHR_materials_unlit: reflects nothing (albedo 0) and emits its base colour
   TextureSlot baseColorMap, metallicRoughnessMap, normalMap, emissiveMap;
+  TextureSlot heightMap;  // texture: index into DrawList::heights; displaces the surface inwards, see relief.h
+  float heightScale = 0;  // of heightMap: object space, how deep h = 0 lies; >= 0
 };
 
 }  // namespace obscura::raster

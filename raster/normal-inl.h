@@ -24,22 +24,6 @@ HWY_INLINE V3 rotate(const float m[3][3], const V3& n) {
   return {row(m[0]), row(m[1]), row(m[2])};
 }
 
-// False where v has no direction: zero, not finite, or its square out of float's range.
-HWY_INLINE MF hasDirection(const V3& v) {
-  const DF d;
-  const VF square = dot(v, v);
-  return hn::And(hn::Ge(square, hn::Set(d, 1e-36f)), hn::Le(square, hn::Set(d, 1e36f)));
-}
-
-// Unit vector, or `otherwise` where v has no direction.
-HWY_INLINE V3 normalizeOr(const V3& v, const V3& otherwise) {
-  const DF d;
-  const VF square = dot(v, v);
-  const MF usable = hasDirection(v);
-  const VF one = hn::Set(d, 1.0f);
-  return select(usable, scale(v, hn::Div(one, hn::Sqrt(hn::IfThenElse(usable, square, one)))), otherwise);
-}
-
 // Unit normal of the plane through the corners, camera space; towards the eye where there is none.
 HWY_NOINLINE V3 flatNormal(const Draw& draw, const V3 object[3]) {
   const DF d;

@@ -15,6 +15,7 @@
 #include "obscura/raster/implicit.h"
 #include "obscura/raster/occlusion.h"
 #include "obscura/raster/parallel.h"
+#include "obscura/raster/relief.h"
 #include "obscura/raster/resolve.h"
 #include "obscura/raster/setup.h"
 #include "obscura/raster/srgb.h"
@@ -80,6 +81,7 @@ struct Rasterizer::State {
   std::vector<std::unique_ptr<Worker>> workers;
   std::vector<Bins> bins, awayBins;  // one per worker, contiguous for the tiles
   std::vector<ImplicitDraw> implicits;
+  bool displaces = false;  // some draw has a height map
   Statistics statistics;
   Timings timings;
   TileGrid grid;
@@ -204,7 +206,7 @@ void Rasterizer::State::drawLayer(const SurfaceContext& context, const TileBuffe
   storeTileDepth(*context.view, tile, more, out, target);
 }
 
-// What the bins still hold, the planes, then what implicit surfaces show before them.
+// What the bins still hold, the planes, what is displaced in them, then what implicit surfaces show before them.
 void Rasterizer::State::finishTiles(const SurfaceContext& context, const PlaneSet& planes, GBuffer& out) {
   parallel.forRanges(size_t(grid.count()), 1, [&](size_t begin, size_t end, int index) {
     Worker& worker = *workers[size_t(index)];
@@ -217,6 +219,7 @@ void Rasterizer::State::finishTiles(const SurfaceContext& context, const PlaneSe
       if ((more || traced) && !holds) clearTile(keep, tile, target);
       if (more) rasterTile(context, int(t), bins, keep, tile, target);
       if (keep == Keep::Visibility) resolveTile(context, tile, covered, out, target);
+      if (displaces || planes.relief) displaceTile(context, tile, covered, out, target);
       if (traced) drawImplicits(*context.view, implicits, tile, settings.skip, out, target);
       covered |= traced;
       ++worker.statistics.tiles;
@@ -292,7 +295,9 @@ void Rasterizer::State::render(const DrawList& list, const View& view, const Cam
   clusterThoseWithout(draws, made);
   drawRuns.find(draws);
   implicits = makeImplicitDraws(list, camera);
-  const SurfaceContext context{&view, draws, &drawRuns, list.textures, srgb.linear};
+  const SurfaceContext context{&view, draws, &drawRuns, list.textures, srgb.linear, list.heights};
+  displaces = anyRelief(draws);
+  if (displaces) keep = Keep::Visibility;  // what is displaced is known by its id
   if (planes.depthBack) setupAway(view, awayDraws(draws));
   // What lies behind the first layer must not be hidden by it.
   drawVisible(context, settings.skip && !planes.depth2 && !planes.depthBack && int64_t(view.width) * view.height <= kMostKept);

@@ -190,12 +190,13 @@ void renderReference(const DrawList& list, const Camera& camera, int width, int 
   const SrgbTable srgb;
   const View view = makeView(camera, width, height, window);
   const std::vector<Draw> draws = makeDraws(list, camera);
-  const SurfaceContext context{&view, draws, nullptr, list.textures, srgb.linear};
+  const SurfaceContext context{&view, draws, nullptr, list.textures, srgb.linear, list.heights};
   const std::vector<ImplicitDraw> implicits = makeImplicitDraws(list, camera);
   ref::Visibility visibility = ref::visibility(context);
   out = GBuffer(view.width, view.height, planes);
   for (int y = 0; y < view.height; ++y)
     for (int x = 0; x < view.width; ++x) ref::resolvePixel(context, visibility.triangle.at(x, y), visibility.key.at(x, y), x, y, out);
+  ref::displace(context, visibility, out);
   ref::drawImplicits(view, implicits, visibility, out);
   ref::layersBehind(context, implicits, visibility, planes.separation, out);
 }

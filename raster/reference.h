@@ -22,6 +22,13 @@ void layersBehind(const SurfaceContext& context, Span<const ImplicitDraw> implic
                   GBuffer& out);
 void resolvePixel(const SurfaceContext& context, uint32_t id, float key, int x, int y, GBuffer& out);
 
+// What resolve stores of a surface, not yet cut to its range.
+struct Shaded {
+  glm::vec3 normal, base, emitted;
+};
+void resolveShaded(const SurfaceContext& context, uint32_t id, float key, const Shaded& shaded, int x, int y, GBuffer& out);
+void displace(const SurfaceContext& context, Visibility& seen, GBuffer& out);
+
 // What is seen of implicit surfaces, before triangles that are resolved already.
 void drawImplicits(const View& view, Span<const ImplicitDraw> surfaces, Visibility& seen, GBuffer& out);
 using LimitOf = std::function<float(int x, int y)>;

@@ -72,7 +72,7 @@ glm::vec3 shadingNormal(const SurfaceContext& context, const SurfacePoint& p) {
   for (int i = 0; i < 3; ++i) corner[i] = normals.empty() ? geometricNormal(p) : rotate(draw.normalToView, normals[p.vertex[i]]);
   glm::vec3 n = corner[0] + ((corner[1] - corner[0]) * p.weight[1] + (corner[2] - corner[0]) * p.weight[2]);
   if (!normalize(n)) n = geometricNormal(p);
-  if (draw.material->normalMap.texture >= 0) n = bend(context, p, n);
+  if (draw.material->normalMap.texture >= 0 && draw.material->heightMap.texture < 0) n = bend(context, p, n);
   const bool fromBehind = p.clockwise != draw.mirrored;
   return draw.material->doubleSided && fromBehind ? -n : n;
 }
@@ -109,40 +109,43 @@ void resolveImplicit(const View& view, const ImplicitDraw& surface, const glm::v
   store(out.triangle, x, y, surface.id);
   store(out.instance, x, y, surface.instance);
   store(out.material, x, y, surface.materialIndex);
+  store(out.heightMap, x, y, kNoTriangle);
+  for (Plane<float>& plane : out.relief)
+    if (!plane.empty()) plane.at(x, y) = 0;
+}
+
+void resolveShaded(const SurfaceContext& context, uint32_t id, float key, const Shaded& shaded, int x, int y, GBuffer& out) {
+  const View& view = *context.view;
+  const Draw& draw = drawOf(context, id);
+  const float zView = view.perspective ? 1 / key : 0 - key;
+  glm::vec3 base = shaded.base, emitted = shaded.emitted;
+  for (int c = 0; c < 3; ++c) {
+    base[c] = std::min(nonNegative(base[c]), 1.0f);
+    emitted[c] = nonNegative(emitted[c]);
+  }
+  const bool unlit = draw.material->unlit;
+  if (!out.depth.empty()) out.depth.at(x, y) = zView;
+  store(out.normal, x, y, shaded.normal);
+  store(out.albedo, x, y, unlit ? glm::vec3(0) : base);
+  store(out.emissive, x, y, unlit ? base : emitted);
+  store(out.position, x, y, positionAt(view, x, y, zView));
+  store(out.triangle, x, y, id);
+  store(out.instance, x, y, draw.instance);
+  store(out.material, x, y, draw.materialIndex);
 }
 
 void resolvePixel(const SurfaceContext& context, uint32_t id, float key, int x, int y, GBuffer& out) {
-  const View& view = *context.view;
-  glm::vec3 normal(0), albedo(0), emissive(0), position(0);
-  uint32_t instance = kNoTriangle, material = kNoTriangle;
-  float zView = std::numeric_limits<float>::infinity();
   if (id != kNoTriangle) {
     const Draw& draw = drawOf(context, id);
     const Material& m = *draw.material;
-    instance = draw.instance;
-    material = draw.materialIndex;
-    zView = view.perspective ? 1 / key : 0 - key;
-    position = positionAt(view, x, y, zView);
-
-    const SurfacePoint p = seePixel(view, draw, id - draw.firstTriangle, x, y);
-    normal = shadingNormal(context, p);
-    glm::vec3 base = glm::vec3(baseColor(context, p)), emitted = m.emissive;
+    const SurfacePoint p = seePixel(*context.view, draw, id - draw.firstTriangle, x, y);
+    glm::vec3 emitted = m.emissive;
     if (m.emissiveMap.texture >= 0) emitted *= glm::vec3(sampleSlot(context, p, m.emissiveMap));
-    for (int c = 0; c < 3; ++c) {
-      base[c] = std::min(nonNegative(base[c]), 1.0f);
-      emitted[c] = nonNegative(emitted[c]);
-    }
-    (m.unlit ? emissive : albedo) = base;
-    if (!m.unlit) emissive = emitted;
+    return resolveShaded(context, id, key, {shadingNormal(context, p), glm::vec3(baseColor(context, p)), emitted}, x, y, out);
   }
-  if (!out.depth.empty()) out.depth.at(x, y) = zView;
-  store(out.normal, x, y, normal);
-  store(out.albedo, x, y, albedo);
-  store(out.emissive, x, y, emissive);
-  store(out.position, x, y, position);
-  store(out.triangle, x, y, id);
-  store(out.instance, x, y, instance);
-  store(out.material, x, y, material);
+  if (!out.depth.empty()) out.depth.at(x, y) = std::numeric_limits<float>::infinity();
+  for (auto* planes : {out.normal, out.albedo, out.emissive, out.position}) store(planes, x, y, glm::vec3(0));
+  for (Plane<uint32_t>* plane : {&out.triangle, &out.instance, &out.material}) store(*plane, x, y, kNoTriangle);
 }
 
 }  // namespace obscura::raster::ref

@@ -29,6 +29,22 @@ HWY_INLINE V3 select(MF mask, const V3& yes, const V3& no) {
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
 }
 
+// False where v has no direction: zero, not finite, or its square out of float's range.
+HWY_INLINE MF hasDirection(const V3& v) {
+  const DF d;
+  const VF square = dot(v, v);
+  return hn::And(hn::Ge(square, hn::Set(d, 1e-36f)), hn::Le(square, hn::Set(d, 1e36f)));
+}
+
+// Unit vector, or `otherwise` where v has no direction.
+HWY_INLINE V3 normalizeOr(const V3& v, const V3& otherwise) {
+  const DF d;
+  const VF square = dot(v, v);
+  const MF usable = hasDirection(v);
+  const VF one = hn::Set(d, 1.0f);
+  return select(usable, scale(v, hn::Div(one, hn::Sqrt(hn::IfThenElse(usable, square, one)))), otherwise);
+}
+
 // One triangle per lane, all of the same draw, seen from one pixel per lane.
 struct Seen {
   bool one;             // the same triangle in all lanes: its vertices are read once, not gathered

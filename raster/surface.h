@@ -32,6 +32,7 @@ struct SurfaceContext {
   const DrawRuns* runs = nullptr;  // of the draws, or null
   Span<const TextureView> textures;
   const float* srgbToLinear = nullptr;  // SrgbTable::linear
+  Span<const HeightView> heights = {};
 };
 
 // Pixels. Cells begin at multiples of it in the whole image, and so does every window that the rasterizer draws.

@@ -31,5 +31,7 @@ glm::vec4 baseColor(const SurfaceContext& context, const SurfacePoint& p);
 glm::vec4 sampleSlot(const SurfaceContext& context, const SurfacePoint& p, const TextureSlot& slot);
 glm::vec4 sampleTexture(const TextureView& texture, const float* srgbToLinear, float u, float v, float lod);
 float levelOfDetail(float squaredLength);
+float foldCoordinate(float u, Wrap mode);   // into [0, 1]
+int wrapTexel(int i, int size, Wrap mode);  // i at most one step outside of [0, size)
 
 }  // namespace obscura::raster::ref

@@ -6,9 +6,7 @@
 #include "obscura/raster/surface_ref.h"
 
 namespace obscura::raster::ref {
-namespace {
-
-float fold(float u, Wrap mode) {
+float foldCoordinate(float u, Wrap mode) {
   if (mode == Wrap::Repeat) u -= std::floor(u);
   if (mode == Wrap::MirroredRepeat) {
     u -= 2 * std::floor(u * 0.5f);
@@ -18,11 +16,13 @@ float fold(float u, Wrap mode) {
   return u < 1 ? u : 1;
 }
 
-int wrap(int i, int size, Wrap mode) {
+int wrapTexel(int i, int size, Wrap mode) {
   if (i >= 0 && i < size) return i;
   if (mode == Wrap::Repeat) return i < 0 ? size - 1 : 0;
   return i < 0 ? 0 : size - 1;
 }
+
+namespace {
 
 struct Level {
   const TextureView& texture;
@@ -37,8 +37,8 @@ struct Level {
   }
 
   glm::vec4 texel(int x, int y) const {
-    x = wrap(x, width, texture.wrapU);
-    y = wrap(y, height, texture.wrapV);
+    x = wrapTexel(x, width, texture.wrapU);
+    y = wrapTexel(y, height, texture.wrapV);
     unsigned char c[4];
     std::memcpy(c, texels + size_t(y) * size_t(width) + size_t(x), 4);
     glm::vec4 v;
@@ -72,8 +72,8 @@ float levelOfDetail(float squaredLength) {
 }
 
 glm::vec4 sampleTexture(const TextureView& t, const float* table, float u, float v, float lod) {
-  u = fold(u, t.wrapU);
-  v = fold(v, t.wrapV);
+  u = foldCoordinate(u, t.wrapU);
+  v = foldCoordinate(v, t.wrapV);
   if (!(lod > 0)) return Level(t, table, 0).sample(u, v, t.magFilter);
   if (t.mip == MipFilter::None) return Level(t, table, 0).sample(u, v, t.minFilter);
   const float l = std::min(lod, float(t.levels - 1));

@@ -167,3 +167,80 @@ TEST_CASE("containment: what is double-sided has no inside") {
   runPost(without, s.camera, settings(0.5f), raster::supportedTargets().front());
   CHECK(firstDifference(with, without) == "");
 }
+
+namespace {
+
+// A square with bumps, seen from above or at a grazing angle, and a ball on it.
+TestScene bumpyScene(bool grazing) {
+  TestScene s;
+  Random random(3);
+  for (int i = 0; i < 16 * 16; ++i) s.heights.push_back(random.real(0, 1));
+  s.heightViews = {{s.heights, 16, 16}};
+  s.materials.resize(2);
+  s.materials[0].baseColor = {0.7f, 0.6f, 0.5f, 1};
+  s.materials[0].heightMap.texture = 0;
+  s.materials[0].heightScale = 0.2f;
+  TestMesh& mesh = s.addMesh();
+  TestScene::addQuad(mesh, {-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2});
+  mesh.uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+  s.place(mesh);
+  TestMesh& plain = s.addMesh();
+  TestScene::addQuad(plain, {-9, -1, 9}, {9, -1, 9}, {9, -1, -9}, {-9, -1, -9});
+  s.place(plain, 1);
+  s.implicits = {placed(ImplicitShape::Sphere, {0, 0.2, 0})};
+  s.width = 131, s.height = 90;
+  s.camera = raster::perspective(0.7, 131.0 / 90, 0.1);
+  s.camera.viewFromWorld = raster::lookAt(grazing ? glm::dvec3(0.5, 0.5, 4) : glm::dvec3(0.2, 4, 2), {0, 0, 0}, {0, 1, 0});
+  return s;
+}
+
+raster::GBuffer reliefOf(const TestScene& s) {
+  raster::PlaneSet planes = kAllPlanes;
+  planes.relief = true;
+  raster::Rasterizer rasterizer;
+  raster::GBuffer g;
+  rasterizer.render(s.list(), s.camera, s.width, s.height, planes, g);
+  return g;
+}
+
+}  // namespace
+
+TEST_CASE("containment: with a height field, implicit surfaces and the depth map the kernels have the bits of their twin") {
+  for (const bool grazing : {false, true}) {
+    const TestScene s = bumpyScene(grazing);
+    const std::vector<ImplicitDraw> draws = raster::makeImplicitDraws(s.list(), s.camera);
+    PostFrame expected;
+    expected.g = reliefOf(s);
+    expected.in.implicits = draws;
+    expected.in.heights = s.heightViews;
+    const post::AmbientSettings a = settings(0.2f, grazing ? 3 : 1);
+    runPost(expected, s.camera, a, {});
+    for (raster::Target target : raster::supportedTargets())
+      for (const bool skip : {true, false}) {
+        PostFrame f;
+        f.g = reliefOf(s);
+        f.in.implicits = draws;
+        f.in.heights = s.heightViews;
+        runPost(f, s.camera, a, target, post::Occlusion::Transfer, skip);
+        INFO(raster::targetName(target) << (skip ? "" : ", no skip"));
+        REQUIRE(firstDifference(f, expected) == "");
+      }
+  }
+}
+
+TEST_CASE("containment: a height field shadows what the depth map cannot see, and never opens what it can") {
+  const TestScene s = bumpyScene(true);
+  PostFrame with, without;
+  with.g = reliefOf(s), without.g = reliefOf(s);
+  with.in.heights = s.heightViews;
+  runPost(with, s.camera, settings(0.2f), raster::supportedTargets().front());
+  runPost(without, s.camera, settings(0.2f), raster::supportedTargets().front());
+  int darker = 0;
+  for (int y = 0; y < s.height; ++y)
+    for (int x = 0; x < s.width; ++x) {
+      REQUIRE(with.sums.numerator.at(x, y) <= without.sums.numerator.at(x, y));
+      if (with.g.heightMap.at(x, y) == raster::kNoTriangle) REQUIRE(with.sums.numerator.at(x, y) == without.sums.numerator.at(x, y));
+      darker += with.sums.numerator.at(x, y) < without.sums.numerator.at(x, y);
+    }
+  CHECK(darker > 100);
+}

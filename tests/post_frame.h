@@ -25,8 +25,8 @@ inline post::TransferInput transferInput(const raster::GBuffer& g, const raster:
   return {&g, post::makeProjector(camera, g.width, g.height), settings, post::transferSamples(settings)};
 }
 
-// The passes on frame.g; `target` empty: by the scalar twins. skip: what is known to be open is not sampled. With stored
-// radiance transfer.w is made of the bounced light.
+// The passes on frame.g, with frame.in.implicits and heights; `target` empty: by the scalar twins. skip: what is known to be
+// open is not sampled. With stored radiance transfer.w is made of the bounced light.
 inline void runPost(PostFrame& f, const raster::Camera& camera, const post::AmbientSettings& settings,
                     std::optional<raster::Target> target, post::Occlusion occlusion = post::Occlusion::Transfer,
                     bool skip = true, const post::AmbientLight& ambient = glm::vec3(0.9f, 1, 1.3f)) {
@@ -34,8 +34,10 @@ inline void runPost(PostFrame& f, const raster::Camera& camera, const post::Ambi
   const bool stored = settings.albedo == post::TransferAlbedo::Radiance;
   const post::DisplayTable table;
   const raster::Span<const raster::ImplicitDraw> implicits = f.in.implicits;
+  const raster::Span<const raster::HeightView> heights = f.in.heights;
   f.in = transferInput(f.g, camera, settings);
   f.in.implicits = implicits;
+  f.in.heights = heights;
   if (stored) {
     f.radiance = post::makeLinearColor(f.g.width, h);
     const post::LightInput first{&f.g, nullptr, post::Occlusion::None, ambient, glm::vec3(0)};

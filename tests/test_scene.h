@@ -28,6 +28,8 @@ struct TestScene {
   std::vector<raster::Material> materials;
   std::vector<raster::Instance> instances;
   std::vector<raster::ImplicitSurface> implicits;
+  std::vector<float> heights;
+  std::vector<raster::HeightView> heightViews;
   raster::Camera camera;
   int width = 64, height = 48;
 
@@ -38,7 +40,7 @@ struct TestScene {
   TestMesh& addMesh() { return meshes.emplace_back(); }
   // Fixes the mesh's view and places it.
   void place(TestMesh& mesh, uint32_t material = 0, const glm::dmat4& worldFromObject = glm::dmat4(1), bool clusters = true);
-  raster::DrawList list() const { return {instances, materials, textures, implicits}; }
+  raster::DrawList list() const { return {instances, materials, textures, implicits, heightViews}; }
   // a, b, c, d counter-clockwise seen from outside.
   static void addQuad(TestMesh& mesh, glm::vec3 a, glm::vec3 b, glm::vec3 c, glm::vec3 d);
 };
