@@ -46,8 +46,14 @@ class HeightField {
   // offset: from the pixel's point to the test point, z away from the eye.
   HWY_INLINE MF inner(const V3& offset) const {
     const DF d;
+    return any_ ? below(offset) : hn::Lt(hn::Zero(d), hn::Zero(d));
+  }
+
+ private:
+  // Not inlined: it would be compiled into every kernel.
+  HWY_NOINLINE MF below(const V3& offset) const {
+    const DF d;
     MF inside = hn::Lt(hn::Zero(d), hn::Zero(d));
-    if (!any_) return inside;
     const auto plane = [&](int k) HWY_ATTR { return hn::LoadU(d, g_.relief[k].row(y_) + x_); };
     const auto moved = [&](int k) HWY_ATTR {
       const VF xy = hn::Add(hn::Mul(offset.x, plane(3 * k + 3)), hn::Mul(offset.y, plane(3 * k + 4)));
@@ -62,7 +68,6 @@ class HeightField {
     return inside;
   }
 
- private:
   HWY_INLINE VI map() const { return hn::LoadU(DI(), reinterpret_cast<const int32_t*>(g_.heightMap.row(y_) + x_)); }
 
   const raster::GBuffer& g_;

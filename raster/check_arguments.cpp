@@ -70,6 +70,7 @@ void checkWindow(const Window& w, int width, int height) {
 void checkPlanes(const PlaneSet& planes) {
   if (planes.depth2 && !(planes.separation > 0 && std::isfinite(planes.separation)))
     fail("separation ", planes.separation, " of depth2, not positive and finite");
+  if (planes.relief && !planes.normal) fail("the planes of the relief are asked for without the normal's");
 }
 
 void checkArguments(const DrawList& list, const Camera& c, int width, int height, const std::optional<Window>& window) {

@@ -16,7 +16,7 @@ struct PlaneSet {
   bool triangle = false, instance = false, material = false;
   bool depth2 = false, depthBack = false;
   float separation = 0;  // of depth2: scene units, positive and finite; not read without it
-  bool relief = false;   // for the transfer of displaced surfaces
+  bool relief = false;   // for the transfer of displaced surfaces; not without `normal`
 
   // Nothing but depths: ids, normals and materials are not even kept per pixel, alpha is tested all the same.
   bool depthsAlone() const {

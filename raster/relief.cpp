@@ -68,11 +68,8 @@ class Relief {
     const VF py = hn::Div(hn::Sub(yc, hn::Set(d, view_.yShiftSub)), hn::Set(d, view_.yScaleSub));
     const V3 ray{view_.perspective ? px : zero, view_.perspective ? py : zero, hn::Set(d, -1.0f)};
 
-    // The normal of the side that is seen, and how far along the ray the greatest depth is.
-    V3 n = broadcast(frame_.normal);
-    const VF along = dot(n, ray);
-    n = select(hn::Gt(along, zero), {hn::Sub(zero, n.x), hn::Sub(zero, n.y), hn::Sub(zero, n.z)}, n);
-    const VF sinks = hn::Abs(along), least = hn::Mul(hn::Sqrt(dot(ray, ray)), hn::Set(d, kFlattestRay));
+    // How far along the ray the greatest depth is, on whichever side.
+    const VF sinks = hn::Abs(dot(broadcast(frame_.normal), ray)), least = hn::Mul(hn::Sqrt(dot(ray, ray)), hn::Set(d, kFlattestRay));
     const VF depth = hn::Set(d, frame_.depth), span = hn::Div(depth, hn::IfThenElse(hn::Gt(sinks, least), sinks, least));
     const VF falls = hn::Div(hn::Mul(sinks, span), depth);
     const VF step1 = hn::Mul(dot(broadcast(frame_.gradient[0]), ray), span), step2 = hn::Mul(dot(broadcast(frame_.gradient[1]), ray), span);
@@ -83,7 +80,7 @@ class Relief {
     };
     const VF du = slope(u_), dv = slope(v_);
     const auto below = [&](VF tau) HWY_ATTR {
-      const VF height = heightAt(map_, hn::Add(u0, hn::Mul(du, tau)), hn::Add(v0, hn::Mul(dv, tau)));
+      const VF height = heightOf(hn::Add(u0, hn::Mul(du, tau)), hn::Add(v0, hn::Mul(dv, tau)));
       return hn::Le(hn::Sub(one, hn::Mul(falls, tau)), height);
     };
     const VF tau = firstBelow(mine, stepsOf(du, dv), below);
@@ -100,11 +97,13 @@ class Relief {
     storeColors(pixels, s, out);
     const VF u = hn::Add(u0, hn::Mul(du, tau)), v = hn::Add(v0, hn::Mul(dv, tau));
     const V3 gradientU = gradientOf(u_), gradientV = gradientOf(v_);
-    if (!out.normal[0].empty()) storeNormals(pixels, u, v, gradientU, gradientV, out);
+    if (out.normal[0].empty()) return;
+    const V3 smooth = loadNormals(pixels, out);
+    storeNormals(pixels, smooth, u, v, gradientU, gradientV, out);
     if (out.heightMap.empty()) return;
     const VF perDepth = hn::Div(one, depth);
     const VF planes[12] = {u, v, hn::Sub(one, hn::Mul(falls, tau)), gradientU.x, gradientU.y, gradientU.z, gradientV.x, gradientV.y,
-                           gradientV.z, hn::Mul(n.x, perDepth), hn::Mul(n.y, perDepth), hn::Mul(n.z, perDepth)};
+                           gradientV.z, hn::Mul(smooth.x, perDepth), hn::Mul(smooth.y, perDepth), hn::Mul(smooth.z, perDepth)};
     for (int k = 0; k < 12; ++k) store(pixels, planes[k], out.relief[k]);
     eachLane(pixels, [&](int, int column, int row) { out.heightMap.at(column, row) = uint32_t(draw_.material->heightMap.texture); });
   }
@@ -147,6 +146,9 @@ class Relief {
     return {hn::Add(hn::Mul(a1, g1.x), hn::Mul(a2, g2.x)), hn::Add(hn::Mul(a1, g1.y), hn::Mul(a2, g2.y)),
             hn::Add(hn::Mul(a1, g1.z), hn::Mul(a2, g2.z))};
   }
+
+  // Not inlined: it is called from seven places.
+  HWY_NOINLINE VF heightOf(VF u, VF v) const { return heightAt(map_, u, v); }
 
   // As many as the ray crosses texels.
   HWY_INLINE VF stepsOf(VF du, VF dv) const {
@@ -202,16 +204,21 @@ class Relief {
     }
   }
 
-  // Those of the plane, tilted.
-  HWY_INLINE void storeNormals(const Pixels& p, VF u, VF v, const V3& gradientU, const V3& gradientV, GBuffer& out) const {
+  // Those of the triangle, as resolve stored them.
+  static HWY_INLINE V3 loadNormals(const Pixels& p, const GBuffer& out) {
     const DF d;
     HWY_ALIGN float read[3][kLanes] = {};
     for (int c = 0; c < 3; ++c) eachLane(p, [&](int i, int x, int y) { read[c][i] = out.normal[c].at(x, y); });
-    const V3 n{hn::Load(d, read[0]), hn::Load(d, read[1]), hn::Load(d, read[2])};
+    return {hn::Load(d, read[0]), hn::Load(d, read[1]), hn::Load(d, read[2])};
+  }
+
+  // The triangle's normals n, tilted by the map.
+  HWY_INLINE void storeNormals(const Pixels& p, const V3& n, VF u, VF v, const V3& gradientU, const V3& gradientV, GBuffer& out) const {
+    const DF d;
     const float w = float(map_.width), h = float(map_.height);
     const VF stepU = hn::Set(d, 1 / w), stepV = hn::Set(d, 1 / h);
-    const VF slopeU = hn::Mul(hn::Sub(heightAt(map_, hn::Add(u, stepU), v), heightAt(map_, hn::Sub(u, stepU), v)), hn::Set(d, 0.5f * w * frame_.depth));
-    const VF slopeV = hn::Mul(hn::Sub(heightAt(map_, u, hn::Add(v, stepV)), heightAt(map_, u, hn::Sub(v, stepV))), hn::Set(d, 0.5f * h * frame_.depth));
+    const VF slopeU = hn::Mul(hn::Sub(heightOf(hn::Add(u, stepU), v), heightOf(hn::Sub(u, stepU), v)), hn::Set(d, 0.5f * w * frame_.depth));
+    const VF slopeV = hn::Mul(hn::Sub(heightOf(u, hn::Add(v, stepV)), heightOf(u, hn::Sub(v, stepV))), hn::Set(d, 0.5f * h * frame_.depth));
     const V3 tilt{hn::Add(hn::Mul(slopeU, gradientU.x), hn::Mul(slopeV, gradientV.x)),
                   hn::Add(hn::Mul(slopeU, gradientU.y), hn::Mul(slopeV, gradientV.y)),
                   hn::Add(hn::Mul(slopeU, gradientU.z), hn::Mul(slopeV, gradientV.z))};

@@ -49,9 +49,7 @@ void displacePixel(const SurfaceContext& context, uint32_t id, float& key, int x
   const float px = (float(view.xCenterSub(x)) - view.xShiftSub) / view.xScaleSub;
   const float py = (float(view.yCenterSub(y)) - view.yShiftSub) / view.yScaleSub;
   const glm::vec3 ray = view.perspective ? glm::vec3(px, py, -1) : glm::vec3(0, 0, -1);
-  glm::vec3 n = vectorOf(f.normal);
-  const float along = dot(n, ray), sinks = std::fabs(along);
-  if (along > 0) n = glm::vec3(0) - n;
+  const float sinks = std::fabs(dot(vectorOf(f.normal), ray));
   const float span = f.depth / std::max(sinks, std::sqrt(dot(ray, ray)) * kFlattestRay), falls = sinks * span / f.depth;
   const float step1 = dot(vectorOf(f.gradient[0]), ray) * span, step2 = dot(vectorOf(f.gradient[1]), ray) * span;
   const glm::vec2 start = corner[0] * p.weight[0] + corner[1] * p.weight[1] + corner[2] * p.weight[2];
@@ -67,7 +65,7 @@ void displacePixel(const SurfaceContext& context, uint32_t id, float& key, int x
   p.weight[2] += step2 * tau;
   p.weight[0] = 1 - p.weight[1] - p.weight[2];
 
-  glm::vec3 base = glm::vec3(baseColor(context, p)), emitted = m.emissive, normal(0);
+  glm::vec3 base = glm::vec3(baseColor(context, p)), emitted = m.emissive, smooth(0), normal(0);
   if (m.emissiveMap.texture >= 0) emitted *= glm::vec3(sampleSlot(context, p, m.emissiveMap));
   const glm::vec2 uv = at(tau), texel(1 / float(map.width), 1 / float(map.height));
   const auto gradient = [&](int c) {
@@ -75,7 +73,7 @@ void displacePixel(const SurfaceContext& context, uint32_t id, float& key, int x
   };
   const glm::vec3 gradientU = gradient(0), gradientV = gradient(1);
   if (!out.normal[0].empty()) {
-    const glm::vec3 smooth(out.normal[0].at(x, y), out.normal[1].at(x, y), out.normal[2].at(x, y));
+    smooth = glm::vec3(out.normal[0].at(x, y), out.normal[1].at(x, y), out.normal[2].at(x, y));
     const float slopeU = (heightAt(map, uv.x + texel.x, uv.y) - heightAt(map, uv.x - texel.x, uv.y)) * (0.5f * float(map.width) * f.depth);
     const float slopeV = (heightAt(map, uv.x, uv.y + texel.y) - heightAt(map, uv.x, uv.y - texel.y)) * (0.5f * float(map.height) * f.depth);
     normal = smooth - (gradientU * slopeU + gradientV * slopeV);
@@ -85,7 +83,7 @@ void displacePixel(const SurfaceContext& context, uint32_t id, float& key, int x
   resolveShaded(context, id, key, {normal, base, emitted}, x, y, out);
   if (out.heightMap.empty()) return;
   out.heightMap.at(x, y) = uint32_t(m.heightMap.texture);
-  const glm::vec3 upwards = n * (1 / f.depth);
+  const glm::vec3 upwards = smooth * (1 / f.depth);
   const glm::vec3 rows[4] = {{uv, 1 - falls * tau}, gradientU, gradientV, upwards};
   for (int r = 0; r < 4; ++r)
     for (int c = 0; c < 3; ++c) out.relief[r * 3 + c].at(x, y) = rows[r][c];

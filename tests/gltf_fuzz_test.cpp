@@ -30,7 +30,9 @@ GltfBuilder sample() {
   const int uv = b.addAccessor<uint16_t>({0, 0, 65535, 0, 0, 65535}, kUShort, "VEC2", true);
   b.addTexture(pngOf({0xFF0000FF, 0xFF00FF00, 0xFFFF0000, 0x80FFFFFF}, 2, 2), {{"minFilter", 9987}, {"wrapS", 33071}});
   b.add("materials", GltfBuilder::Json::parse(R"({"alphaMode": "MASK", "pbrMetallicRoughness": {"baseColorTexture":
-    {"index": 0, "extensions": {"KHR_texture_transform": {"offset": [0.5, 0], "rotation": 1}}}}})"));
+    {"index": 0, "extensions": {"KHR_texture_transform": {"offset": [0.5, 0], "rotation": 1}}}},
+    "extras": {"obscura_height": {"index": 0, "scale": 0.5, "texCoord": 0,
+    "extensions": {"KHR_texture_transform": {"offset": [0.25, 1]}}}}})"));
   b.addTriangle({{"attributes", {{"TEXCOORD_0", uv}}},
                  {"material", 0},
                  {"indices", b.addAccessor<uint8_t>({0, 1, 2}, kUByte, "SCALAR")}});
@@ -79,7 +81,15 @@ void checkSound(const Scene& scene) {
     REQUIRE(implicit.material < scene.materials.size());
     REQUIRE(obscura::raster::wrongImplicit(implicit) == nullptr);
   }
-  for (const auto& material : scene.materials) REQUIRE(material.baseColorMap.texture < int(scene.textures.size()));
+  for (const auto& material : scene.materials) {
+    REQUIRE(material.baseColorMap.texture < int(scene.textures.size()));
+    REQUIRE(material.heightMap.texture < int(scene.heightMaps.size()));
+    REQUIRE((material.heightScale >= 0 && material.heightScale <= 1e15f));
+  }
+  for (const auto& map : scene.heightMaps) {
+    REQUIRE(map.view.heights.size() == size_t(map.view.width) * size_t(map.view.height));
+    for (float h : map.view.heights) REQUIRE((h >= 0 && h <= 1));
+  }
   for (int c = 0; c < 3; ++c) REQUIRE((std::isfinite(scene.bounds.min[c]) && std::isfinite(scene.bounds.max[c])));
 }
 
