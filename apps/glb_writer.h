@@ -15,7 +15,7 @@ struct GlbTexture {  // becomes an embedded PNG, repeated in both directions, wi
   std::string name;
   int width = 0, height = 0;
   std::vector<uint8_t> rgba;  // sRGB and straight alpha, row 0 on top
-  std::vector<uint16_t> grey; // instead of it: linear, 16 bits
+  std::vector<uint16_t> grey = {};  // instead of it: linear, 16 bits
 };
 
 struct GlbMaterial {

@@ -79,9 +79,8 @@ struct Rasterizer::State {
   SrgbTable srgb;
   DrawRuns drawRuns;
   std::vector<std::unique_ptr<Worker>> workers;
-  std::vector<Bins> bins, awayBins;  // one per worker, contiguous for the tiles
+  std::vector<Bins> bins, awayBins, displacedBins;  // one per worker, contiguous for the tiles
   std::vector<ImplicitDraw> implicits;
-  bool displaces = false;  // some draw has a height map
   Statistics statistics;
   Timings timings;
   TileGrid grid;
@@ -102,6 +101,7 @@ struct Rasterizer::State {
   void setupAway(const View& view, const std::vector<Draw>& draws);
   void drawRound(const SurfaceContext& context);
   void finishTiles(const SurfaceContext& context, const PlaneSet& planes, GBuffer& out);
+  TileBuffers drawDisplaced(const SurfaceContext& context, const TileBuffers& tile, int index, Worker& worker);
   void drawLayer(const SurfaceContext& context, const TileBuffers& first, bool covered, int index, LayerBehind layer,
                  float separation, Worker& worker, Plane<float>& out);
   const OcclusionMap* seen() const { return drawn ? &occlusion : nullptr; }
@@ -187,6 +187,16 @@ void Rasterizer::State::drawRound(const SurfaceContext& context) {
   timings.tilesMs += watch.lap();
 }
 
+// What is displaced, into the visibility of a tile. Returns where worker.behind keeps how far it sinks.
+TileBuffers Rasterizer::State::drawDisplaced(const SurfaceContext& context, const TileBuffers& tile, int index, Worker& worker) {
+  worker.behind.reserve(1, grid.tileBits);
+  TileBuffers displaced = placeTile(grid, index, worker.behind, 0);
+  clearTile(Keep::Visibility, displaced, target);
+  rasterTile(context, index, displacedBins, Keep::Visibility, displaced, target);
+  sinkTile(context, displaced, tile, target);
+  return displaced;
+}
+
 // A layer behind the first of a tile.
 void Rasterizer::State::drawLayer(const SurfaceContext& context, const TileBuffers& first, bool covered, int index, LayerBehind layer,
                                   float separation, Worker& worker, Plane<float>& out) {
@@ -194,19 +204,21 @@ void Rasterizer::State::drawLayer(const SurfaceContext& context, const TileBuffe
   worker.behind.reserve(1, grid.tileBits);
   TileBuffers tile = placeTile(grid, index, worker.behind, 0);
   const bool traced = touchesImplicits(*context.view, implicits, tile, settings.skip);
-  const bool more = anyOf(from, index) || traced || !settings.skip;
+  const bool flat = layer == LayerBehind::Second && anyOf(displacedBins, index);
+  const bool more = anyOf(from, index) || flat || traced || !settings.skip;
   if (more) {
     worker.limit.resize(1 << (2 * grid.tileBits), 1);
     tile.limit = worker.limit.row(0);
     limitTile(*context.view, first, covered, layer, separation, tile, target);
     clearTile(Keep::KeyWithinLimit, tile, target);
     rasterTile(context, index, from, Keep::KeyWithinLimit, tile, target);
+    if (flat) rasterTile(context, index, displacedBins, Keep::KeyWithinLimit, tile, target);
     if (traced) drawImplicitsBehind(*context.view, implicits, tile, layer == LayerBehind::Back, settings.skip, target);
   }
   storeTileDepth(*context.view, tile, more, out, target);
 }
 
-// What the bins still hold, the planes, what is displaced in them, then what implicit surfaces show before them.
+// What the bins still hold, the planes, then what implicit surfaces show before them.
 void Rasterizer::State::finishTiles(const SurfaceContext& context, const PlaneSet& planes, GBuffer& out) {
   parallel.forRanges(size_t(grid.count()), 1, [&](size_t begin, size_t end, int index) {
     Worker& worker = *workers[size_t(index)];
@@ -215,11 +227,15 @@ void Rasterizer::State::finishTiles(const SurfaceContext& context, const PlaneSe
       TileBuffers tile = rounds ? placeTile(grid, int(t), kept, t) : placeTile(grid, int(t), worker.tile, 0);
       const bool holds = rounds && started[t], more = anyOf(bins, int(t)) || !settings.skip;
       const bool traced = touchesImplicits(*context.view, implicits, tile, settings.skip);
-      bool covered = holds || more;
-      if ((more || traced) && !holds) clearTile(keep, tile, target);
+      const bool sinks = anyOf(displacedBins, int(t));
+      bool covered = holds || more || sinks;
+      if ((more || sinks || traced) && !holds) clearTile(keep, tile, target);
       if (more) rasterTile(context, int(t), bins, keep, tile, target);
+      TileBuffers displaced;
+      if (sinks) displaced = drawDisplaced(context, tile, int(t), worker);
       if (keep == Keep::Visibility) resolveTile(context, tile, covered, out, target);
-      if (displaces || planes.relief) displaceTile(context, tile, covered, out, target);
+      if (planes.relief) clearRelief(tile, out);
+      if (sinks) storeRelief(context, tile, displaced, out, target);
       if (traced) drawImplicits(*context.view, implicits, tile, settings.skip, out, target);
       covered |= traced;
       ++worker.statistics.tiles;
@@ -247,11 +263,14 @@ void Rasterizer::render(const DrawList& list, const Camera& camera, int width, i
   cutOut(whole, {left, top, wanted.width, wanted.height}, out);
 }
 
-// All that is visible into bins, and but for the last round into tiles.
+// All that is visible into bins, and but for the last round into tiles; what is displaced into bins of its own.
 void Rasterizer::State::drawVisible(const SurfaceContext& context, bool mayHide) {
   const View& view = *context.view;
   const int64_t pixels = int64_t(view.width) * view.height;
-  const std::vector<const Draw*> visible = visibleInstances(view, context.draws, settings.skip, statistics);
+  std::vector<const Draw*> visible = visibleInstances(view, context.draws, settings.skip, statistics);
+  const auto flatEnd = std::stable_partition(visible.begin(), visible.end(), [](const Draw* d) { return !isDisplaced(*d); });
+  const std::vector<const Draw*> displaced(flatEnd, visible.end());
+  visible.erase(flatEnd, visible.end());
   size_t look = mayHide ? kFirstClusters : std::numeric_limits<size_t>::max();
   for (size_t from = 0, to = 0; from < visible.size(); from = to, look *= 2) {
     for (size_t count = 0; to < visible.size() && (to == from || count + visible[to]->clusters->clusters.size() <= look); ++to)
@@ -270,6 +289,9 @@ void Rasterizer::State::drawVisible(const SurfaceContext& context, bool mayHide)
       count -= front;
     }
   }
+  // Nothing displaced hides others, as it lies behind its triangles; but what hides these hides it, too.
+  if (!displaced.empty())
+    setupClusters(view, findCandidates(view, displaced, {settings.skip, seen()}, parallel, statistics).clusters, false, displacedBins);
 }
 
 void Rasterizer::State::beginFrame(const View& view, const PlaneSet& planes, GBuffer& out) {
@@ -281,7 +303,7 @@ void Rasterizer::State::beginFrame(const View& view, const PlaneSet& planes, GBu
   timings = {};
   while (workers.size() < size_t(parallel.workers())) workers.push_back(std::make_unique<Worker>());
   for (auto& w : workers) w->statistics = {};
-  for (std::vector<Bins>* list : {&bins, &awayBins}) {
+  for (std::vector<Bins>* list : {&bins, &awayBins, &displacedBins}) {
     list->resize(workers.size());
     for (Bins& b : *list) b.reset(grid);
   }
@@ -296,8 +318,7 @@ void Rasterizer::State::render(const DrawList& list, const View& view, const Cam
   drawRuns.find(draws);
   implicits = makeImplicitDraws(list, camera);
   const SurfaceContext context{&view, draws, &drawRuns, list.textures, srgb.linear, list.heights};
-  displaces = anyRelief(draws);
-  if (displaces) keep = Keep::Visibility;  // what is displaced is known by its id
+  if (std::any_of(draws.begin(), draws.end(), isDisplaced)) keep = Keep::Visibility;  // what is displaced is known by its id
   if (planes.depthBack) setupAway(view, awayDraws(draws));
   // What lies behind the first layer must not be hidden by it.
   drawVisible(context, settings.skip && !planes.depth2 && !planes.depthBack && int64_t(view.width) * view.height <= kMostKept);

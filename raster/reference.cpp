@@ -114,9 +114,10 @@ void drawTriangle(const SurfaceContext& context, const Draw& draw, uint32_t tria
   }
 }
 
-void drawAll(const SurfaceContext& context, const Fragments& out) {
+template <class Wanted>
+void drawAll(const SurfaceContext& context, const Wanted& wanted, const Fragments& out) {
   for (const Draw& draw : context.draws) {
-    if (out.back && draw.material->doubleSided) continue;
+    if (!wanted(draw)) continue;
     for (uint32_t t = 0; t < draw.triangleCount; ++t) drawTriangle(context, draw, t, out);
   }
 }
@@ -133,7 +134,7 @@ void layerBehind(const SurfaceContext& context, Span<const ImplicitDraw> implici
   f.back = back;
   f.wants = [&](int x, int y, float key, uint32_t) { return key > best.at(x, y) && key <= limit(first.key.at(x, y)); };
   f.take = [&](int x, int y, float key, uint32_t) { best.at(x, y) = key; };
-  drawAll(context, f);
+  drawAll(context, [&](const Draw& draw) { return !back || !draw.material->doubleSided; }, f);
   drawImplicitsBehind(*context.view, implicits, back, [&](int x, int y) { return limit(first.key.at(x, y)); }, best);
   for (int y = 0; y < first.height; ++y)
     for (int x = 0; x < first.width; ++x) {
@@ -144,7 +145,7 @@ void layerBehind(const SurfaceContext& context, Span<const ImplicitDraw> implici
 
 }  // namespace
 
-Visibility visibility(const SurfaceContext& context) {
+Visibility visibility(const SurfaceContext& context, bool displaced) {
   Visibility out;
   out.width = context.view->width;
   out.height = context.view->height;
@@ -162,7 +163,7 @@ Visibility visibility(const SurfaceContext& context) {
     out.key.at(x, y) = key;
     out.triangle.at(x, y) = id;
   };
-  drawAll(context, f);
+  drawAll(context, [&](const Draw& draw) { return displaced == (draw.material->heightMap.texture >= 0); }, f);
   return out;
 }
 
@@ -192,11 +193,12 @@ void renderReference(const DrawList& list, const Camera& camera, int width, int 
   const std::vector<Draw> draws = makeDraws(list, camera);
   const SurfaceContext context{&view, draws, nullptr, list.textures, srgb.linear, list.heights};
   const std::vector<ImplicitDraw> implicits = makeImplicitDraws(list, camera);
-  ref::Visibility visibility = ref::visibility(context);
+  ref::Visibility visibility = ref::visibility(context, false);
+  ref::sinkInto(context, ref::visibility(context, true), visibility);
   out = GBuffer(view.width, view.height, planes);
   for (int y = 0; y < view.height; ++y)
     for (int x = 0; x < view.width; ++x) ref::resolvePixel(context, visibility.triangle.at(x, y), visibility.key.at(x, y), x, y, out);
-  ref::displace(context, visibility, out);
+  ref::storeRelief(context, visibility, out);
   ref::drawImplicits(view, implicits, visibility, out);
   ref::layersBehind(context, implicits, visibility, planes.separation, out);
 }

@@ -16,7 +16,8 @@ struct Visibility {
   Plane<uint32_t> triangle;  // kNoTriangle where empty
 };
 
-Visibility visibility(const SurfaceContext& context);
+// Of the draws that have no height map, or of those that have one.
+Visibility visibility(const SurfaceContext& context, bool displaced);
 // The layers behind it: all triangles and implicit surfaces once more for each that `out` has a plane for.
 void layersBehind(const SurfaceContext& context, Span<const ImplicitDraw> implicits, const Visibility& first, float separation,
                   GBuffer& out);
@@ -27,7 +28,9 @@ struct Shaded {
   glm::vec3 normal, base, emitted;
 };
 void resolveShaded(const SurfaceContext& context, uint32_t id, float key, const Shaded& shaded, int x, int y, GBuffer& out);
-void displace(const SurfaceContext& context, Visibility& seen, GBuffer& out);
+// What relief.h does.
+void sinkInto(const SurfaceContext& context, const Visibility& displaced, Visibility& seen);
+void storeRelief(const SurfaceContext& context, const Visibility& seen, GBuffer& out);
 
 // What is seen of implicit surfaces, before triangles that are resolved already.
 void drawImplicits(const View& view, Span<const ImplicitDraw> surfaces, Visibility& seen, GBuffer& out);

@@ -54,66 +54,91 @@ class Relief {
   }
   bool displaces() const { return frame_.depth > 0 && !draw_.mesh->uvs[draw_.material->heightMap.uvSet].empty(); }
 
-  // The pixels `mine` of a vector whose lanes are the pixels (x + lx, y + ly) of the image; at: element of the first.
-  HWY_NOINLINE void displace(const TileBuffers& tile, int at, int x, int y, VI lx, VI ly, MF mine, GBuffer& out) const {
+  // A vector of pixels: lanes are the pixels (x + lx, y + ly) of the image, of which the triangle shows in `mine`.
+  struct Pixels {
+    int x, y;
+    VI lx, ly;
+    MF mine;
+  };
+
+  // How far the pixels sink: tau, and the key that they have then.
+  HWY_NOINLINE void sink(const Pixels& pixels, VF& key, VF& tau) const {
     const DF d;
-    const DI di;
-    const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-    const int cellX = x - ((view_.left + x) & (kCell - 1)), cellY = y - ((view_.top + y) & (kCell - 1));
-    Seen s = seeTriangle(weightPlanes(view_, draw_, vertex_, cellX, cellY), vertex_,
-                         hn::ConvertTo(d, hn::Add(lx, hn::Set(di, x - cellX))), hn::ConvertTo(d, hn::Add(ly, hn::Set(di, y - cellY))));
-    const VF xc = hn::ConvertTo(d, hn::Add(hn::Set(di, view_.xCenterSub(x)), hn::ShiftLeft<kSubBits>(lx)));
-    const VF yc = hn::ConvertTo(d, hn::Add(hn::Set(di, view_.yCenterSub(y)), hn::ShiftLeft<kSubBits>(ly)));
-    const VF px = hn::Div(hn::Sub(xc, hn::Set(d, view_.xShiftSub)), hn::Set(d, view_.xScaleSub));
-    const VF py = hn::Div(hn::Sub(yc, hn::Set(d, view_.yShiftSub)), hn::Set(d, view_.yScaleSub));
-    const V3 ray{view_.perspective ? px : zero, view_.perspective ? py : zero, hn::Set(d, -1.0f)};
-
-    // How far along the ray the greatest depth is, on whichever side.
-    const VF sinks = hn::Abs(dot(broadcast(frame_.normal), ray)), least = hn::Mul(hn::Sqrt(dot(ray, ray)), hn::Set(d, kFlattestRay));
-    const VF depth = hn::Set(d, frame_.depth), span = hn::Div(depth, hn::IfThenElse(hn::Gt(sinks, least), sinks, least));
-    const VF falls = hn::Div(hn::Mul(sinks, span), depth);
-    const VF step1 = hn::Mul(dot(broadcast(frame_.gradient[0]), ray), span), step2 = hn::Mul(dot(broadcast(frame_.gradient[1]), ray), span);
-    const VF u0 = interpolate(s, hn::Set(d, u_[0]), hn::Set(d, u_[1]), hn::Set(d, u_[2]));
-    const VF v0 = interpolate(s, hn::Set(d, v_[0]), hn::Set(d, v_[1]), hn::Set(d, v_[2]));
-    const auto slope = [&](const float a[3]) HWY_ATTR {
-      return hn::Add(hn::Mul(hn::Set(d, a[1] - a[0]), step1), hn::Mul(hn::Set(d, a[2] - a[0]), step2));
+    const VF one = hn::Set(d, 1.0f);
+    const Way way = wayOf(pixels);
+    const auto below = [&](VF t) HWY_ATTR {
+      const VF height = heightOf(hn::Add(way.u, hn::Mul(way.du, t)), hn::Add(way.v, hn::Mul(way.dv, t)));
+      return hn::Le(hn::Sub(one, hn::Mul(way.falls, t)), height);
     };
-    const VF du = slope(u_), dv = slope(v_);
-    const auto below = [&](VF tau) HWY_ATTR {
-      const VF height = heightOf(hn::Add(u0, hn::Mul(du, tau)), hn::Add(v0, hn::Mul(dv, tau)));
-      return hn::Le(hn::Sub(one, hn::Mul(falls, tau)), height);
-    };
-    const VF tau = firstBelow(mine, stepsOf(du, dv), below);
+    tau = hn::IfThenElse(pixels.mine, firstBelow(pixels.mine, stepsOf(way.du, way.dv), below), tau);
+    const VF sunk = turned(view_, hn::Add(turned(view_, key), hn::Mul(way.span, tau)));
+    // Not nearer by a rounding, or else what hides the triangle might not hide it.
+    key = hn::IfThenElse(hn::And(pixels.mine, hn::Lt(sunk, key)), sunk, key);
+  }
 
-    const VF zView = hn::Add(turned(view_, hn::Load(d, tile.key + at)), hn::Mul(span, tau));
-    const VF key = turned(view_, zView);
-    hn::Store(hn::IfThenElse(mine, key, hn::Load(d, tile.key + at)), d, tile.key + at);
-    s.weight[1] = hn::Add(s.weight[1], hn::Mul(step1, tau));
-    s.weight[2] = hn::Add(s.weight[2], hn::Mul(step2, tau));
+  // The planes of what lies at tau, with the key that it has there.
+  HWY_NOINLINE void store(const Pixels& pixels, VF key, VF tau, GBuffer& out) const {
+    const DF d;
+    const VF one = hn::Set(d, 1.0f);
+    Way way = wayOf(pixels);
+    Seen& s = way.seen;
+    s.weight[1] = hn::Add(s.weight[1], hn::Mul(way.step1, tau));
+    s.weight[2] = hn::Add(s.weight[2], hn::Mul(way.step2, tau));
     s.weight[0] = hn::Sub(hn::Sub(one, s.weight[1]), s.weight[2]);
-    const Pixels pixels{x, y, lx, ly, mine};
-    const VF seen = turned(view_, key);  // as a key tells it
-    storeShape(pixels, px, py, seen, out);
+    storeShape(pixels, way.px, way.py, turned(view_, key), out);
     storeColors(pixels, s, out);
-    const VF u = hn::Add(u0, hn::Mul(du, tau)), v = hn::Add(v0, hn::Mul(dv, tau));
-    const V3 gradientU = gradientOf(u_), gradientV = gradientOf(v_);
     if (out.normal[0].empty()) return;
-    const V3 smooth = loadNormals(pixels, out);
+    const VF u = hn::Add(way.u, hn::Mul(way.du, tau)), v = hn::Add(way.v, hn::Mul(way.dv, tau));
+    const V3 gradientU = gradientOf(u_), gradientV = gradientOf(v_), smooth = loadNormals(pixels, out);
     storeNormals(pixels, smooth, u, v, gradientU, gradientV, out);
     if (out.heightMap.empty()) return;
-    const VF perDepth = hn::Div(one, depth);
-    const VF planes[12] = {u, v, hn::Sub(one, hn::Mul(falls, tau)), gradientU.x, gradientU.y, gradientU.z, gradientV.x, gradientV.y,
+    const VF perDepth = hn::Set(d, 1 / frame_.depth);
+    const VF planes[12] = {u, v, hn::Sub(one, hn::Mul(way.falls, tau)), gradientU.x, gradientU.y, gradientU.z, gradientV.x, gradientV.y,
                            gradientV.z, hn::Mul(smooth.x, perDepth), hn::Mul(smooth.y, perDepth), hn::Mul(smooth.z, perDepth)};
     for (int k = 0; k < 12; ++k) store(pixels, planes[k], out.relief[k]);
     eachLane(pixels, [&](int, int column, int row) { out.heightMap.at(column, row) = uint32_t(draw_.material->heightMap.texture); });
   }
 
  private:
-  struct Pixels {
-    int x, y;
-    VI lx, ly;
-    MF mine;
+  // Of the rays through the pixels, from the triangle (tau 0) to where they are followed to (tau 1).
+  struct Way {
+    Seen seen;
+    VF px, py;        // position / zView where perspective, else position
+    VF span, falls;   // along the view axis; of the greatest depth
+    VF step1, step2;  // of the weights of vertices 1 and 2
+    VF u, v, du, dv;  // in the map, at tau 0 and from there to tau 1
   };
+
+  HWY_NOINLINE Way wayOf(const Pixels& p) const {
+    const DF d;
+    const DI di;
+    Way way;
+    const VF zero = hn::Zero(d);
+    const int cellX = p.x - ((view_.left + p.x) & (kCell - 1)), cellY = p.y - ((view_.top + p.y) & (kCell - 1));
+    way.seen = seeTriangle(weightPlanes(view_, draw_, vertex_, cellX, cellY), vertex_,
+                           hn::ConvertTo(d, hn::Add(p.lx, hn::Set(di, p.x - cellX))), hn::ConvertTo(d, hn::Add(p.ly, hn::Set(di, p.y - cellY))));
+    const VF xc = hn::ConvertTo(d, hn::Add(hn::Set(di, view_.xCenterSub(p.x)), hn::ShiftLeft<kSubBits>(p.lx)));
+    const VF yc = hn::ConvertTo(d, hn::Add(hn::Set(di, view_.yCenterSub(p.y)), hn::ShiftLeft<kSubBits>(p.ly)));
+    way.px = hn::Div(hn::Sub(xc, hn::Set(d, view_.xShiftSub)), hn::Set(d, view_.xScaleSub));
+    way.py = hn::Div(hn::Sub(yc, hn::Set(d, view_.yShiftSub)), hn::Set(d, view_.yScaleSub));
+    const V3 ray{view_.perspective ? way.px : zero, view_.perspective ? way.py : zero, hn::Set(d, -1.0f)};
+
+    // How far along the ray the greatest depth is, on whichever side.
+    const VF sinks = hn::Abs(dot(broadcast(frame_.normal), ray)), least = hn::Mul(hn::Sqrt(dot(ray, ray)), hn::Set(d, kFlattestRay));
+    const VF depth = hn::Set(d, frame_.depth);
+    way.span = hn::Div(depth, hn::IfThenElse(hn::Gt(sinks, least), sinks, least));
+    way.falls = hn::Div(hn::Mul(sinks, way.span), depth);
+    way.step1 = hn::Mul(dot(broadcast(frame_.gradient[0]), ray), way.span);
+    way.step2 = hn::Mul(dot(broadcast(frame_.gradient[1]), ray), way.span);
+    way.u = interpolate(way.seen, hn::Set(d, u_[0]), hn::Set(d, u_[1]), hn::Set(d, u_[2]));
+    way.v = interpolate(way.seen, hn::Set(d, v_[0]), hn::Set(d, v_[1]), hn::Set(d, v_[2]));
+    const auto slope = [&](const float a[3]) HWY_ATTR {
+      return hn::Add(hn::Mul(hn::Set(d, a[1] - a[0]), way.step1), hn::Mul(hn::Set(d, a[2] - a[0]), way.step2));
+    };
+    way.du = slope(u_);
+    way.dv = slope(v_);
+    return way;
+  }
 
   // body(lane, x, y) for the pixels of a vector.
   template <class Body>
@@ -234,36 +259,65 @@ class Relief {
   float u_[3] = {}, v_[3] = {};  // in the height map, of the vertices
 };
 
-void DisplaceTile(const SurfaceContext& context, const TileBuffers& tile, GBuffer& out) {
+// body(relief, pixels) for each displaced triangle that shows in a vector.
+template <class Body>
+HWY_INLINE void eachRelief(const SurfaceContext& context, const TileBuffers& tile, int x, int y, int first, const Body& body) {
   const DU du;
   const DI di;
   const DF d;
-  const VU none = hn::Set(du, kNoTriangle);
+  const VU id = hn::Load(du, tile.id + tile.at(x, y) + first);
+  const VI pixel = hn::Iota(di, first), lx = hn::And(pixel, hn::Set(di, kBlock - 1)), ly = hn::ShiftRight<kBlockBits>(pixel);
+  const auto inside = hn::And(hn::Lt(lx, hn::Set(di, tile.width - x)), hn::Lt(ly, hn::Set(di, tile.height - y)));
+  auto rest = hn::And(hn::Ne(id, hn::Set(du, kNoTriangle)), hn::RebindMask(du, inside));
+  while (!hn::AllFalse(du, rest)) {
+    const uint32_t one = tile.id[tile.at(x, y) + first + int(hn::FindKnownFirstTrue(du, rest))];
+    const auto mine = hn::And(hn::Eq(id, hn::Set(du, one)), rest);
+    rest = hn::AndNot(mine, rest);
+    const Draw& draw = drawOf(context, one);
+    if (draw.material->heightMap.texture < 0) continue;
+    const Relief relief(context, draw, one - draw.firstTriangle);
+    if (relief.displaces()) body(relief, Relief::Pixels{tile.x + x, tile.y + y, lx, ly, hn::RebindMask(d, mine)});
+  }
+}
+
+template <class Body>
+HWY_INLINE void eachVector(const TileBuffers& tile, const Body& body) {
   for (int y = 0; y < tile.height; y += kBlock)
     for (int x = 0; x < tile.width; x += kBlock)
-      for (int first = 0; first < kBlock * kBlock; first += kLanes) {
-        const int at = tile.at(x, y) + first;
-        const VU id = hn::Load(du, tile.id + at);
-        auto rest = hn::Ne(id, none);
-        while (!hn::AllFalse(du, rest)) {
-          const uint32_t one = tile.id[at + int(hn::FindKnownFirstTrue(du, rest))];
-          const auto mine = hn::Eq(id, hn::Set(du, one));
-          rest = hn::AndNot(mine, rest);
-          const Draw& draw = drawOf(context, one);
-          if (draw.material->heightMap.texture < 0) continue;
-          const Relief relief(context, draw, one - draw.firstTriangle);
-          if (!relief.displaces()) continue;
-          const VI pixel = hn::Iota(di, first);
-          const VI lx = hn::And(pixel, hn::Set(di, kBlock - 1)), ly = hn::ShiftRight<kBlockBits>(pixel);
-          const MF inside = hn::RebindMask(d, hn::And(hn::Lt(lx, hn::Set(di, tile.width - x)), hn::Lt(ly, hn::Set(di, tile.height - y))));
-          relief.displace(tile, at, tile.x + x, tile.y + y, lx, ly, hn::And(inside, hn::RebindMask(d, mine)), out);
-        }
-      }
+      for (int first = 0; first < kBlock * kBlock; first += kLanes) body(x, y, first);
+}
+
+void SinkTile(const SurfaceContext& context, const TileBuffers& displaced, const TileBuffers& tile) {
+  eachVector(tile, [&](int x, int y, int first) HWY_ATTR {
+    const DF d;
+    const DU du;
+    const int at = tile.at(x, y) + first;
+    VF key = hn::Load(d, displaced.key + at), tau = hn::Zero(d);
+    eachRelief(context, displaced, x, y, first,
+               [&](const Relief& relief, const Relief::Pixels& pixels) HWY_ATTR { relief.sink(pixels, key, tau); });
+    hn::Store(tau, d, displaced.key + at);
+    const VF keptKey = hn::Load(d, tile.key + at);
+    const VU id = hn::Load(du, displaced.id + at), keptId = hn::Load(du, tile.id + at);
+    const MF wins = hn::Or(hn::Gt(key, keptKey), hn::And(hn::Eq(key, keptKey), hn::RebindMask(d, hn::Lt(id, keptId))));
+    hn::Store(hn::IfThenElse(wins, key, keptKey), d, tile.key + at);
+    hn::Store(hn::IfThenElse(hn::RebindMask(du, wins), id, keptId), du, tile.id + at);
+  });
+}
+
+void StoreRelief(const SurfaceContext& context, const TileBuffers& tile, const TileBuffers& displaced, GBuffer& out) {
+  eachVector(tile, [&](int x, int y, int first) HWY_ATTR {
+    const DF d;
+    const int at = tile.at(x, y) + first;
+    const VF key = hn::Load(d, tile.key + at), tau = hn::Load(d, displaced.key + at);
+    eachRelief(context, tile, x, y, first,
+               [&](const Relief& relief, const Relief::Pixels& pixels) HWY_ATTR { relief.store(pixels, key, tau, out); });
+  });
 }
 
 }  // namespace relief
 
-using relief::DisplaceTile;
+using relief::SinkTile;
+using relief::StoreRelief;
 
 }  // namespace HWY_NAMESPACE
 }  // namespace obscura::raster
@@ -274,7 +328,8 @@ HWY_AFTER_NAMESPACE();
 
 namespace obscura::raster {
 
-HWY_EXPORT(DisplaceTile);
+HWY_EXPORT(SinkTile);
+HWY_EXPORT(StoreRelief);
 
 ReliefFrame reliefFrame(const Draw& draw, const uint32_t vertex[3]) {
   ReliefFrame out{};
@@ -302,20 +357,24 @@ ReliefFrame reliefFrame(const Draw& draw, const uint32_t vertex[3]) {
     out.gradient[0][r] = float(g1[r]);
     out.gradient[1][r] = float(g2[r]);
   }
-  out.depth = float(double(draw.material->heightScale) * std::fabs(lifted));
+  const double depth = double(draw.material->heightScale) * std::fabs(lifted);
+  if (depth >= kLeastReliefDepth && depth <= kGreatestReliefDepth) out.depth = float(depth);
   return out;
 }
 
-bool anyRelief(Span<const Draw> draws) {
-  return std::any_of(draws.begin(), draws.end(), [](const Draw& d) { return d.material->heightMap.texture >= 0; });
+void sinkTile(const SurfaceContext& context, const TileBuffers& displaced, const TileBuffers& tile, Target target) {
+  OBSCURA_DISPATCH(SinkTile, target)(context, displaced, tile);
 }
 
-void displaceTile(const SurfaceContext& context, const TileBuffers& tile, bool covered, GBuffer& out, Target target) {
-  for (int row = tile.y; row < tile.y + tile.height && !out.heightMap.empty(); ++row) {
+void clearRelief(const TileBuffers& tile, GBuffer& out) {
+  for (int row = tile.y; row < tile.y + tile.height; ++row) {
     std::fill_n(out.heightMap.row(row) + tile.x, tile.width, kNoTriangle);
     for (Plane<float>& plane : out.relief) std::fill_n(plane.row(row) + tile.x, tile.width, 0.0f);
   }
-  if (covered && anyRelief(context.draws)) OBSCURA_DISPATCH(DisplaceTile, target)(context, tile, out);
+}
+
+void storeRelief(const SurfaceContext& context, const TileBuffers& tile, const TileBuffers& displaced, GBuffer& out, Target target) {
+  OBSCURA_DISPATCH(StoreRelief, target)(context, tile, displaced, out);
 }
 
 }  // namespace obscura::raster

@@ -1,6 +1,7 @@
 // Scalar twin of relief.cpp and height-inl.h.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "obscura/raster/reference.h"
 #include "obscura/raster/relief.h"
@@ -29,20 +30,30 @@ float lastAbove(float steps, const Below& below) {
   return low;
 }
 
-void displacePixel(const SurfaceContext& context, uint32_t id, float& key, int x, int y, GBuffer& out) {
+// Where the ray of a pixel meets the map of the triangle that it shows.
+struct Sunk {
+  SurfacePoint point;  // on the triangle, then with weights beyond it
+  ReliefFrame frame;
+  glm::vec3 gradient[2];  // of u and v, in view space
+  glm::vec3 uvh;          // in the map
+  float behind;           // the triangle, along the view axis
+};
+
+// Nothing where the triangle is not displaced.
+std::optional<Sunk> sink(const SurfaceContext& context, uint32_t id, int x, int y) {
   const View& view = *context.view;
   const Draw& draw = drawOf(context, id);
-  const Material& m = *draw.material;
-  const Span<const glm::vec2> uvs = draw.mesh->uvs[m.heightMap.uvSet];
-  if (m.heightMap.texture < 0 || uvs.empty()) return;
-  const HeightView& map = context.heights[size_t(m.heightMap.texture)];
+  const TextureSlot& slot = draw.material->heightMap;
+  const Span<const glm::vec2> uvs = draw.mesh->uvs[slot.uvSet];
+  if (slot.texture < 0 || uvs.empty()) return {};
+  const HeightView& map = context.heights[size_t(slot.texture)];
   SurfacePoint p = seePixel(view, draw, id - draw.firstTriangle, x, y);
   const ReliefFrame f = reliefFrame(draw, p.vertex);
-  if (!(f.depth > 0)) return;
+  if (!(f.depth > 0)) return {};
 
   glm::vec2 corner[3];
   for (int i = 0; i < 3; ++i) {
-    const auto& t = m.heightMap.uvFromUv;
+    const auto& t = slot.uvFromUv;
     const glm::vec2 uv = uvs[p.vertex[i]];
     corner[i] = {t[0] * uv.x + t[1] * uv.y + t[2], t[3] * uv.x + t[4] * uv.y + t[5]};
   }
@@ -51,40 +62,46 @@ void displacePixel(const SurfaceContext& context, uint32_t id, float& key, int x
   const glm::vec3 ray = view.perspective ? glm::vec3(px, py, -1) : glm::vec3(0, 0, -1);
   const float sinks = std::fabs(dot(vectorOf(f.normal), ray));
   const float span = f.depth / std::max(sinks, std::sqrt(dot(ray, ray)) * kFlattestRay), falls = sinks * span / f.depth;
-  const float step1 = dot(vectorOf(f.gradient[0]), ray) * span, step2 = dot(vectorOf(f.gradient[1]), ray) * span;
+  const glm::vec3 g1 = vectorOf(f.gradient[0]), g2 = vectorOf(f.gradient[1]);
+  const float step1 = dot(g1, ray) * span, step2 = dot(g2, ray) * span;
   const glm::vec2 start = corner[0] * p.weight[0] + corner[1] * p.weight[1] + corner[2] * p.weight[2];
-  const glm::vec2 way = (corner[1] - corner[0]) * step1 + (corner[2] - corner[0]) * step2;
+  const glm::vec2 along1 = corner[1] - corner[0], along2 = corner[2] - corner[0], way = along1 * step1 + along2 * step2;
   const auto at = [&](float tau) { return start + way * tau; };
   float steps = std::max({kFewestReliefSteps, std::fabs(way.x) * float(map.width), std::fabs(way.y) * float(map.height)});
   steps = std::min(steps, kMostReliefSteps);
   const float tau = lastAbove(steps, [&](float t) { return 1 - falls * t <= heightAt(map, at(t).x, at(t).y); });
 
-  const float zView = view.perspective ? 1 / key : 0 - key, sunk = zView + span * tau;
-  key = view.perspective ? 1 / sunk : 0 - sunk;
   p.weight[1] += step1 * tau;
   p.weight[2] += step2 * tau;
   p.weight[0] = 1 - p.weight[1] - p.weight[2];
+  return Sunk{p, f, {g1 * along1.x + g2 * along2.x, g1 * along1.y + g2 * along2.y}, {at(tau), 1 - falls * tau}, span * tau};
+}
 
-  glm::vec3 base = glm::vec3(baseColor(context, p)), emitted = m.emissive, smooth(0), normal(0);
-  if (m.emissiveMap.texture >= 0) emitted *= glm::vec3(sampleSlot(context, p, m.emissiveMap));
-  const glm::vec2 uv = at(tau), texel(1 / float(map.width), 1 / float(map.height));
-  const auto gradient = [&](int c) {
-    return vectorOf(f.gradient[0]) * (corner[1][c] - corner[0][c]) + vectorOf(f.gradient[1]) * (corner[2][c] - corner[0][c]);
-  };
-  const glm::vec3 gradientU = gradient(0), gradientV = gradient(1);
+// The interpolated normal, tilted by the map.
+glm::vec3 tilted(const Sunk& s, const HeightView& map, const glm::vec3& smooth) {
+  const glm::vec2 size(float(map.width), float(map.height)), texel(1 / size.x, 1 / size.y);
+  const float u = s.uvh.x, v = s.uvh.y;
+  const float slopeU = (heightAt(map, u + texel.x, v) - heightAt(map, u - texel.x, v)) * (0.5f * size.x * s.frame.depth);
+  const float slopeV = (heightAt(map, u, v + texel.y) - heightAt(map, u, v - texel.y)) * (0.5f * size.y * s.frame.depth);
+  const glm::vec3 n = smooth - (s.gradient[0] * slopeU + s.gradient[1] * slopeV);
+  const float square = dot(n, n);
+  return square >= 1e-36f && square <= 1e36f ? n * (1 / std::sqrt(square)) : smooth;
+}
+
+void displacePixel(const SurfaceContext& context, uint32_t id, float key, int x, int y, GBuffer& out) {
+  const std::optional<Sunk> s = sink(context, id, x, y);
+  if (!s) return;
+  const Material& m = *drawOf(context, id).material;
+  glm::vec3 base = glm::vec3(baseColor(context, s->point)), emitted = m.emissive, smooth(0), normal(0);
+  if (m.emissiveMap.texture >= 0) emitted *= glm::vec3(sampleSlot(context, s->point, m.emissiveMap));
   if (!out.normal[0].empty()) {
     smooth = glm::vec3(out.normal[0].at(x, y), out.normal[1].at(x, y), out.normal[2].at(x, y));
-    const float slopeU = (heightAt(map, uv.x + texel.x, uv.y) - heightAt(map, uv.x - texel.x, uv.y)) * (0.5f * float(map.width) * f.depth);
-    const float slopeV = (heightAt(map, uv.x, uv.y + texel.y) - heightAt(map, uv.x, uv.y - texel.y)) * (0.5f * float(map.height) * f.depth);
-    normal = smooth - (gradientU * slopeU + gradientV * slopeV);
-    const float square = dot(normal, normal);
-    normal = square >= 1e-36f && square <= 1e36f ? normal * (1 / std::sqrt(square)) : smooth;
+    normal = tilted(*s, context.heights[size_t(m.heightMap.texture)], smooth);
   }
   resolveShaded(context, id, key, {normal, base, emitted}, x, y, out);
   if (out.heightMap.empty()) return;
   out.heightMap.at(x, y) = uint32_t(m.heightMap.texture);
-  const glm::vec3 upwards = smooth * (1 / f.depth);
-  const glm::vec3 rows[4] = {{uv, 1 - falls * tau}, gradientU, gradientV, upwards};
+  const glm::vec3 rows[4] = {s->uvh, s->gradient[0], s->gradient[1], smooth * (1 / s->frame.depth)};
   for (int r = 0; r < 4; ++r)
     for (int c = 0; c < 3; ++c) out.relief[r * 3 + c].at(x, y) = rows[r][c];
 }
@@ -103,7 +120,24 @@ float heightAt(const HeightView& map, float u, float v) {
   return a + (b - a) * (y - top);
 }
 
-void displace(const SurfaceContext& context, Visibility& seen, GBuffer& out) {
+void sinkInto(const SurfaceContext& context, const Visibility& displaced, Visibility& seen) {
+  for (int y = 0; y < seen.height; ++y)
+    for (int x = 0; x < seen.width; ++x) {
+      const uint32_t id = displaced.triangle.at(x, y);
+      if (id == kNoTriangle) continue;
+      const bool perspective = context.view->perspective;
+      float key = displaced.key.at(x, y);
+      if (const std::optional<Sunk> s = sink(context, id, x, y)) {
+        const float zView = (perspective ? 1 / key : 0 - key) + s->behind;
+        key = std::min(key, perspective ? 1 / zView : 0 - zView);
+      }
+      if (key < seen.key.at(x, y) || (key == seen.key.at(x, y) && id > seen.triangle.at(x, y))) continue;
+      seen.key.at(x, y) = key;
+      seen.triangle.at(x, y) = id;
+    }
+}
+
+void storeRelief(const SurfaceContext& context, const Visibility& seen, GBuffer& out) {
   for (int y = 0; y < seen.height; ++y)
     for (int x = 0; x < seen.width; ++x) {
       if (!out.heightMap.empty()) out.heightMap.at(x, y) = kNoTriangle;

@@ -37,14 +37,18 @@ TestMesh& addBall(TestScene& s, int n, Random& random) {
 }
 
 // A crowd: balls in rows one behind the other, some twice in the same place, some around the eye, a wall in front of a
-// part of them and one with holes.
+// part of them, one with holes and two that are displaced.
 TestScene crowd(bool perspectiveView) {
   TestScene s;
   Random random(11);
-  s.materials.resize(3);
+  s.materials.resize(4);
   s.materials[1].doubleSided = true;
   s.materials[2].alphaMode = AlphaMode::Mask;
   s.materials[2].alphaCutoff = 0.5f;
+  s.heights = {0.1f, 0.7f, 0.4f, 1};
+  s.heightViews = {{s.heights, 2, 2}};
+  s.materials[3].heightMap.texture = 0;
+  s.materials[3].heightScale = 0.4f;
   s.width = 157, s.height = 93;
   s.camera = perspectiveView ? perspective(0.9, 157.0 / 93, 0.1) : orthographic(8, 5, 0.1, 100);
   TestMesh& ball = addBall(s, 24, random);
@@ -52,6 +56,7 @@ TestScene crowd(bool perspectiveView) {
   TestMesh& wall = s.addMesh();
   TestScene::addQuad(wall, {-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0});
   for (glm::vec3 p : wall.positions) wall.colors.push_back({1, 1, 1, p.x * p.y > 0 ? 1.0f : 0.0f});
+  for (glm::vec3 p : wall.positions) wall.uvs.push_back({2 * p.x, 2 * p.y});
   s.place(wall);
   const auto put = [&](TestMesh& mesh, uint32_t material, glm::dvec3 at, double scale) {
     glm::dmat4 m(scale);
@@ -65,6 +70,8 @@ TestScene crowd(bool perspectiveView) {
   put(ball, 0, {0.1, 0, 0.05}, 1.0);
   put(wall, 1, {-3, 0, -5}, 1.8);
   put(wall, 2, {2, 0, -4.5}, 1.5);
+  put(wall, 3, {-1, 0.5, -5.5}, 2);  // displaced, among the balls, partly hidden and hiding
+  put(wall, 3, {3, -0.5, -9}, 2.5);
   for (int k = 0; k < 110; ++k) put(wall, 1, {0, 0, -40 - 0.1 * k}, 40);  // so deep that it is drawn in rounds
   return s;
 }

@@ -132,6 +132,22 @@ TEST_CASE("relief: the point that is seen lies on the map, and what hides it doe
   CHECK(tilted > 100);
 }
 
+TEST_CASE("relief: what stands in a hollow is seen, what is below its ground is not, displaced or not, near clusters or far") {
+  for (const float height : {0.0f, 0.25f, 0.5f, 1.0f}) {
+    TestScene s = squareScene(std::vector<float>(4, height), 2, 2, 0.2f);
+    TestMesh& plate = s.addMesh();
+    TestScene::addQuad(plate, {-0.4f, -0.1f, 0.4f}, {0.4f, -0.1f, 0.4f}, {0.4f, -0.1f, -0.4f}, {-0.4f, -0.1f, -0.4f});
+    s.materials.emplace_back();
+    s.place(plate, 1);
+    checkAgainstReference(s);
+    const GBuffer g = render(s);
+    int seen = 0;
+    eachPixel(g, [&](int x, int y) { seen += g.material.at(x, y) == 1; });
+    if (height < 0.5f) CHECK(seen > 100);
+    if (height > 0.5f) CHECK(seen == 0);
+  }
+}
+
 TEST_CASE("relief: depths alone, and a frame that asks for no relief, know the displaced surface as well") {
   const TestScene s = squareScene(noise(64, 9), 8, 8, 0.2f);
   const GBuffer all = render(s);
