@@ -124,6 +124,28 @@ TEST_CASE("golden: the demo scene in an orthographic view, obscurance only") {
   checkGolden("orthographic", s);
 }
 
+TEST_CASE("golden: the demo scene in the light of an environment, before it, displayed by the neutral curve") {
+  engine::FrameSettings s = frameOf(160, 120);
+  raster::Parallel parallel(2);
+  engine::EnvironmentMap map({engine::EnvironmentProjection::Latlong, 128, 64});
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 128; ++x) {  // blue above, brown below, a sun above -x and -z, and lines of longitude and latitude
+      const glm::dvec3 d = map.projector().directionAt({0, x + 0.5, y + 0.5});
+      const bool sun = 0.6 * d.y - 0.4 * d.x - 0.7 * d.z > 0.98, line = x % 16 == 0 || y % 16 == 0;
+      const glm::vec3 sky = d.y > 0 ? glm::vec3(0.4f, 0.7f, 1.4f) * float(1.2 - d.y) : glm::vec3(0.35f, 0.25f, 0.15f);
+      map.at(0, x, y) = sun ? glm::vec3(40, 36, 30) : line ? sky * 0.6f : sky;
+    }
+  map.fillBorders(parallel);
+  auto environment = std::make_shared<engine::Environment>();
+  environment->harmonics = engine::harmonicsOf(map, parallel);
+  environment->cube = convertEnvironment(map, {engine::EnvironmentProjection::Cube, 48, 48}, parallel);
+  s.environment = environment;
+  s.environmentRotation = 30;
+  s.environmentBackground = true;
+  s.tone = {post::ToneCurve::Neutral, 1.2f};
+  checkGolden("environment", s);
+}
+
 TEST_CASE("golden: the demo scene with 4 x 4 sub-pixels a pixel") {
   engine::FrameSettings s = frameOf(79, 61);
   s.supersample = 4;
