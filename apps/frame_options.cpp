@@ -5,7 +5,9 @@
 
 #include "obscura/apps/option_text.h"
 #include "obscura/apps/setting_names.h"
+#include "obscura/engine/extended_ambient.h"
 #include "obscura/raster/exact_math.h"
+#include "obscura/raster/parallel.h"
 #include "obscura/raster/view.h"
 
 namespace obscura::apps {
@@ -114,6 +116,28 @@ void addTarget(CLI::App& app, FrameOptions& o) {
          "X,Y,Z: what the camera of your own looks at [the middle of the scene]. NAME: instruction set to run on, "
          "which changes no bit: auto, scalar, ssse3, sse4, avx2, avx3 or neon [auto: the best]. Both may be given")
       ->type_name("X,Y,Z|NAME")
+      ->allow_extra_args(false)
+      ->group("View");
+}
+
+// A colour and a kind, which cannot be confused.
+void addAmbientLight(CLI::App& app, FrameOptions& o) {
+  const auto read = [&o](const std::vector<std::string>& texts) {
+    int colors = 0, kinds = 0;
+    for (const std::string& text : texts) {
+      const std::optional<glm::vec3> color = colorOf(text);
+      if (color) o.ambientLight = color;
+      else if (text == "extended" || text == "constant") o.ambientExtended = text == "extended";
+      else throw CLI::ValidationError("--ambient-light", "\"" + text + "\" is not R,G,B, #RRGGBB, constant or extended");
+      if (++(color ? colors : kinds) > 1)
+        throw CLI::ValidationError("--ambient-light", "\"" + text + "\" is the second of its kind");
+    }
+  };
+  app.add_option_function<std::vector<std::string>>(
+         "--ambient-light", read,
+         "R,G,B|#RRGGBB: the light that comes from everywhere, linear or sRGB [1,1,1; 0,0,0 where it is extended and things "
+         "emit]. extended: and what the scene's surfaces send each other, by the direction of normals. Both may be given")
+      ->type_name("COLOR|constant|extended")
       ->allow_extra_args(false)
       ->group("View");
 }
@@ -231,7 +255,7 @@ void addView(CLI::App& app, FrameOptions& o) {
       ->group("View");
   addLength(app, "--separation", false, o.separation, "how far behind what is seen the AOV depth2 and the second layer begin",
             shown(engine::kDefaultSeparation) + " x R, with --layers 2 " + shown(engine::kLayerSeparation) + " x R")->group("View");
-  addColor(app, "--ambient-light", o.ambientLight, "the light that comes from everywhere");
+  addAmbientLight(app, o);
   addAmbientVariants(app, o);
 }
 
@@ -304,6 +328,9 @@ void FrameOptions::addTo(CLI::App& app) {
   app.parse_complete_callback([this] {
     if (environment.background && environment.file.empty())
       throw CLI::ValidationError("--background", "environment needs --environment FILE");
+    if (ambientExtended && (ambientDirections || !environment.file.empty()))
+      throw CLI::ValidationError("--ambient-light", std::string("extended and ") + (ambientDirections ? "--ambient-directional" : "--environment") +
+                                                        " cannot be had at once: both say what comes from where");
     if (std::max(width, height) <= raster::kMaxImageSize / supersample) return;
     const auto size = [](int w, int h) { return std::to_string(w) + "x" + std::to_string(h); };
     throw CLI::ValidationError("--supersample", size(width, height) + " pixels times " + std::to_string(supersample) +
@@ -338,8 +365,16 @@ engine::Result<ResolvedFrame> FrameOptions::resolve(const engine::Scene& in) con
   out.frame.supersample = supersample;
   out.frame.camera = *chosen;
   out.frame.ambient = ambient;
-  out.frame.ambientLight = ambientLight;
+  out.frame.ambientLight = ambientLight.value_or(glm::vec3(1));
   out.frame.ambientDirections = ambientDirections;
+  if (ambientExtended) {
+    raster::Parallel parallel(raster.threads);
+    const glm::vec3 light = ambientLight.value_or(glm::vec3(engine::emitsLight(in) ? 0 : 1));
+    const auto colors = engine::extendedAmbient(in, light, parallel);
+    if (!colors) return colors.error();
+    out.frame.ambientLight = glm::vec3(1);
+    out.frame.ambientDirections = *colors;
+  }
   out.frame.background = background;
   out.frame.tone = tone;
   if (!environment.file.empty()) {

@@ -218,7 +218,7 @@ TEST_CASE("cli: every option of the ambient transfer and of the light changes th
                                                  {"--membership", "classic"}, {"--membership", "sqrt"},
                                                  {"--membership", "exponential"}, {"--bias", "0.1"},
                                                  {"--interleave", "off"}, {"--filter", "off"},
-                                                 {"--ambient-light", "0.5,1,1"}, {"--background", "0,0,1"}}) {
+                                                 {"--ambient-light", "0.5,1,1"}, {"--ambient-light", "extended"}, {"--background", "0,0,1"}}) {
     INFO(options[0] << " " << options[1]);
     REQUIRE(w.digests(options).at("color") != standard);
   }
