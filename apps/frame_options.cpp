@@ -77,15 +77,6 @@ void addMatrix(CLI::App& app, const std::string& name, std::optional<glm::dmat4>
   })->group("View");
 }
 
-void addColor(CLI::App& app, const std::string& name, glm::vec3& value, const std::string& what) {
-  addRead(app, name, "R,G,B|#RRGGBB", what + "; R,G,B are linear, #RRGGBB is sRGB [" + shown(value) + "]",
-          [&value](const std::string& text) {
-            const std::optional<glm::vec3> color = colorOf(text);
-            if (color) value = *color;
-            return bool(color);
-          })->group("View");
-}
-
 raster::Target instructionSet(const std::string& text) {
   const std::optional<raster::Target> wanted = raster::targetFromName(text);
   const std::vector<raster::Target> here = raster::supportedTargets();
