@@ -192,8 +192,7 @@ Result<std::array<glm::vec3, 6>> extendedAmbient(const Scene& scene, const glm::
 
 bool emitsLight(const Scene& scene) {
   return std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& i) {
-    const raster::Material& m = scene.materials[scene.meshes[i.mesh].material];
-    return m.unlit || m.emissive.x > 0 || m.emissive.y > 0 || m.emissive.z > 0;
+    return raster::emits(scene.materials[scene.meshes[i.mesh].material]);
   });
 }
 

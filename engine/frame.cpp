@@ -9,6 +9,7 @@
 #include "obscura/engine/ambient_light.h"
 #include "obscura/engine/crop.h"
 #include "obscura/engine/downsample_frame.h"
+#include "obscura/engine/frame_needs.h"
 #include "obscura/post/asked.h"
 #include "obscura/post/environment_background.h"
 #include "obscura/post/transfer_samples.h"
@@ -18,104 +19,6 @@
 #include "obscura/raster/view.h"
 
 namespace obscura::engine {
-namespace {
-
-// What the wanted AOVs add up to.
-struct Needs {
-  raster::PlaneSet planes;
-  bool color = false, sums = false;
-  post::Occlusion occlusion = post::Occlusion::None;  // of the ambient light in the colour
-  post::TransferPlanes transfer;
-  bool albedo = false;    // of what occludes, or of the pixel itself
-  bool radiance = false;  // of what occludes
-  bool onlyLit = false;   // O and W are for the colour alone, and some pixels may reflect nothing
-};
-
-bool emits(const Scene& scene) {
-  return std::any_of(scene.materials.begin(), scene.materials.end(), [](const raster::Material& m) {
-    return m.unlit || m.emissive.x > 0 || m.emissive.y > 0 || m.emissive.z > 0;
-  });
-}
-
-// Some pixels may reflect nothing, whatever textures hold.
-bool hasDarkThings(const Scene& scene) {
-  return std::any_of(scene.materials.begin(), scene.materials.end(), [](const raster::Material& m) {
-    return m.unlit || !(m.baseColor.x > 0 || m.baseColor.y > 0 || m.baseColor.z > 0);
-  }) || std::any_of(scene.instances.begin(), scene.instances.end(), [](const Instance& i) {
-    return i.ambient && *i.ambient == glm::vec3(0);
-  });
-}
-
-// No ambient light at all: nothing to be occluded.
-bool isDark(const Scene& scene, const FrameSettings& s) {
-  return s.ambientLight == glm::vec3(0) && !s.environment && !hasAmbientGroups(scene);
-}
-
-// The light depends on the direction of surfaces.
-bool lightsByNormal(const FrameSettings& s) { return s.ambientDirections || s.environment; }
-
-bool wants(const FrameSettings& s, Aov aov) { return std::find(s.aovs.begin(), s.aovs.end(), aov) != s.aovs.end(); }
-
-Needs needsOf(const Scene& scene, const FrameSettings& s) {
-  const auto wants = [&](Aov aov) { return engine::wants(s, aov); };
-  Needs n;
-  n.color = wants(Aov::Color) || s.display;
-  const bool bounces = s.ambient == post::Occlusion::Transfer && s.transfer.albedo == post::TransferAlbedo::Radiance;
-  if (n.color && (bounces || !isDark(scene, s))) n.occlusion = s.ambient;
-  const bool w = wants(Aov::Transfer) || n.occlusion == post::Occlusion::Transfer;
-  n.radiance = w && s.transfer.albedo == post::TransferAlbedo::Radiance;
-  n.albedo = w && !n.radiance;
-  n.transfer.bounced = n.radiance;
-  n.transfer.w = n.radiance ? wants(Aov::Transfer) : w;
-  n.transfer.obscurance =
-      wants(Aov::Obscurance) || n.radiance || n.occlusion == post::Occlusion::Obscurance;
-  n.sums = w || n.transfer.obscurance;
-  n.onlyLit = n.sums && !wants(Aov::Obscurance) && !wants(Aov::Transfer) && hasDarkThings(scene);
-  const bool lights = n.color || n.radiance;
-  n.planes.depth = wants(Aov::Depth) || n.sums || n.color || s.supersample > 1;  // the nearest sub-pixel
-  n.planes.normal = wants(Aov::Normal) || n.sums || (lights && lightsByNormal(s));
-  n.planes.albedo = wants(Aov::Albedo) || n.albedo || lights;
-  n.planes.emissive = wants(Aov::Emissive) || (lights && emits(scene));
-  n.planes.position = wants(Aov::Position);
-  n.planes.relief = n.sums && s.displacement && !scene.heightMaps.empty();
-  n.planes.triangle = wants(Aov::Triangle);
-  n.planes.instance = wants(Aov::Instance) || (lights && hasAmbientGroups(scene));
-  n.planes.material = wants(Aov::Material);
-  n.planes.depth2 = wants(Aov::Depth2) || (n.sums && s.transfer.layers == 2);
-  n.planes.depthBack = wants(Aov::DepthBack);
-  n.planes.separation = s.separation;
-  return n;
-}
-
-const char* wrongSetting(const FrameSettings& s) {
-  const post::AmbientSettings& t = s.transfer;
-  if (s.supersample != 1 && s.supersample != 2 && s.supersample != 4) return "supersample must be 1, 2 or 4";
-  if (s.supersample > 1 && (std::min(s.width, s.height) < 1 ||
-                            std::max(s.width, s.height) > raster::kMaxImageSize / s.supersample))
-    return "width and height times supersample must be 1 to 16384: choose another size or less supersampling";
-  if (t.samples < 1 || t.samples > 64) return "samples must be 1 to 64";
-  if (t.steps < 1 || t.steps > 4) return "steps must be 1 to 4";
-  if (!(t.radius > 0 && t.radius < 1e30f)) return "the radius must be positive and finite";
-  if (!(t.bias >= 0 && t.bias < 1e30f)) return "the bias must be 0 or more and finite";
-  if (t.layers < 1 || t.layers > 2) return "layers must be 1 or 2";
-  if ((wants(s, Aov::Depth2) || t.layers == 2) && !(s.separation > 0 && s.separation < 1e30f)) return "the separation must be positive and finite";
-  if (t.estimator == post::Estimator::Lines && t.membership != post::Membership::Linear)
-    return "line samples have the linear membership: choose that, or another estimator";
-  if (!(t.filterThreshold > 0)) return "the filter threshold must be positive";
-  if (!(s.environmentIntensity >= 0 && s.environmentIntensity <= kMostIntensity)) return "the environment's intensity must be 0 to 10^6";
-  if (!(std::fabs(s.environmentRotation) <= kMostRotation)) return "the environment's rotation must be -10^6 to 10^6 degrees";
-  if (s.environmentBackground && !(s.environment && !s.environment->cube.texels().empty())) return "an environment as background needs one with a cube";
-  if (!(s.tone.exposure >= 0 && s.tone.exposure <= kMostExposure)) return "the exposure must be a factor of 0 to 2^64";
-  const auto isColor = [](const glm::vec3& v) {
-    return v.x >= 0 && v.y >= 0 && v.z >= 0 && std::max({v.x, v.y, v.z}) < 1e30f;
-  };
-  bool colors = isColor(s.ambientLight) && isColor(s.background);
-  for (int k = 0; s.ambientDirections && k < 6; ++k) colors &= isColor((*s.ambientDirections)[size_t(k)]);
-  return colors ? nullptr : "colours must be 0 or more and finite";
-}
-
-}  // namespace
-
 struct Renderer::State {
   raster::Settings settings;
   bool reference;
@@ -151,15 +54,15 @@ struct Renderer::State {
   raster::DrawList drawList(const Scene& scene, bool displacement);
   void rasterize(const raster::DrawList& list, const FrameSettings& s, const raster::PlaneSet& planes, const raster::Window& w,
                  raster::GBuffer& out);
-  raster::Window windowToDraw(const raster::DrawList& list, const FrameSettings& s, const Needs& needs);
-  void askPixels(const FrameSettings& s, const Needs& needs, int firstRow, int endRow, post::TransferInput& in);
+  raster::Window windowToDraw(const raster::DrawList& list, const FrameSettings& s, const FrameNeeds& needs);
+  void askPixels(const FrameSettings& s, const FrameNeeds& needs, int firstRow, int endRow, post::TransferInput& in);
   post::TransferStatistics transferSums(post::TransferInput& in, int firstRow, int endRow);
 
   static constexpr size_t kRowsPerTask = 8;
 
-  void drawGBuffer(const Scene& scene, const FrameSettings& s, const Needs& needs, Frame& out);
-  void drawTransfer(const FrameSettings& s, const Needs& needs, Frame& out);
-  void drawLight(const FrameSettings& s, const Needs& needs, Frame& out);
+  void drawGBuffer(const Scene& scene, const FrameSettings& s, const FrameNeeds& needs, Frame& out);
+  void drawTransfer(const FrameSettings& s, const FrameNeeds& needs, Frame& out);
+  void drawLight(const FrameSettings& s, const FrameNeeds& needs, Frame& out);
   void drawBackground(const FrameSettings& s, Frame& out);
   void drawDisplay(const FrameSettings& s, Frame& out);
 
@@ -201,7 +104,7 @@ void Renderer::State::rasterize(const raster::DrawList& list, const FrameSetting
 }
 
 // A crop needs as much around it as the transfer's samples reach, and how far that is, the depth in it tells.
-raster::Window Renderer::State::windowToDraw(const raster::DrawList& list, const FrameSettings& s, const Needs& needs) {
+raster::Window Renderer::State::windowToDraw(const raster::DrawList& list, const FrameSettings& s, const FrameNeeds& needs) {
   if (!needs.sums) return outputWindow(s);
   if (!s.crop) return wholeWindow(s);
   raster::PlaneSet onlyDepth;
@@ -211,7 +114,7 @@ raster::Window Renderer::State::windowToDraw(const raster::DrawList& list, const
   return transferWindow(s, nearestDepth(g.depth));
 }
 
-void Renderer::State::drawGBuffer(const Scene& scene, const FrameSettings& s, const Needs& needs, Frame& out) {
+void Renderer::State::drawGBuffer(const Scene& scene, const FrameSettings& s, const FrameNeeds& needs, Frame& out) {
   const raster::DrawList list = drawList(scene, s.displacement);
   const raster::Window output = outputWindow(s);
   window = windowToDraw(list, s, needs);
@@ -225,7 +128,7 @@ void Renderer::State::drawGBuffer(const Scene& scene, const FrameSettings& s, co
 }
 
 // Leaves out what nobody reads, where there may be such: around a crop, and where nothing is reflected.
-void Renderer::State::askPixels(const FrameSettings& s, const Needs& needs, int firstRow, int endRow, post::TransferInput& in) {
+void Renderer::State::askPixels(const FrameSettings& s, const FrameNeeds& needs, int firstRow, int endRow, post::TransferInput& in) {
   if (reference || !settings.skip || !(needs.onlyLit || window.width > filteredWindow(s).width)) return;
   post::AskedInput question{in.g, part, s.transfer.filter, needs.onlyLit, {}};
   if (!needs.radiance) question.ambient = ambient.instances;
@@ -260,7 +163,7 @@ post::TransferStatistics Renderer::State::transferSums(post::TransferInput& in, 
 }
 
 // O and W of the part that is given, and the G-buffer cut down to it.
-void Renderer::State::drawTransfer(const FrameSettings& s, const Needs& needs, Frame& out) {
+void Renderer::State::drawTransfer(const FrameSettings& s, const FrameNeeds& needs, Frame& out) {
   raster::Stopwatch watch;
   raster::GBuffer& g = more() ? drawn : out.g;
   if (needs.sums) {
@@ -294,7 +197,7 @@ void Renderer::State::drawTransfer(const FrameSettings& s, const Needs& needs, F
   out.timings.filter = watch.lap();
 }
 
-void Renderer::State::drawLight(const FrameSettings& s, const Needs& needs, Frame& out) {
+void Renderer::State::drawLight(const FrameSettings& s, const FrameNeeds& needs, Frame& out) {
   const post::LightInput in{&out.g, &out.transfer, needs.occlusion, ambient, s.background};
   if (needs.color) {
     for (int c = 0; overSums && c < 3; ++c) out.color.rgb[c] = std::exchange(sums.denominator[c], {});
@@ -347,7 +250,7 @@ Result<Done> Renderer::render(const Scene& scene, const FrameSettings& settings,
   const bool supersampled = settings.supersample > 1;
   if (!supersampled) s.subpixels = {};
   Frame& drawn = supersampled ? s.subpixels : frame;
-  const Needs needs = needsOf(scene, settings);
+  const FrameNeeds needs = needsOf(scene, settings);
   FrameTimings timings;
   raster::Stopwatch total, watch;
 

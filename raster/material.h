@@ -61,4 +61,7 @@ struct Material {
   float heightScale = 0;  // of heightMap: object space, how deep h = 0 lies; >= 0
 };
 
+// It may send out light of its own.
+inline bool emits(const Material& m) { return m.unlit || m.emissive.x > 0 || m.emissive.y > 0 || m.emissive.z > 0; }
+
 }  // namespace obscura::raster

@@ -231,7 +231,8 @@ TEST_CASE("exact math: the bits of ten thousand results are the same on every ma
     add(exactLog(positive));
     const double base = random.in(0, 2);
     add(exactPow(base, random.in(-5, 5)));
-    add(exactAtan2(random.in(-1, 1), random.in(-1, 1)));
+    const double y = random.in(-1, 1);
+    add(exactAtan2(y, random.in(-1, 1)));
   }
-  CHECK(h == 0x4d5f47031596917full);
+  CHECK(h == 0x74bfb8c3ffe5c974ull);
 }
