@@ -13,9 +13,11 @@
 #include <oneapi/tbb/global_control.h>
 
 #include "obscura/apps/demo_scene.h"
+#include "obscura/apps/demo_surfaces.h"
 #include "obscura/apps/pictures.h"
 #include "obscura/apps/report.h"
 #include "obscura/engine/camera_choice.h"
+#include "obscura/engine/extended_ambient.h"
 #include "obscura/engine/gltf.h"
 #include "obscura/engine/image_file.h"
 #include "obscura/tests/temporary_folder.h"
@@ -32,23 +34,26 @@ const std::vector<engine::Aov> kAovs = {engine::Aov::Color,    engine::Aov::Dept
 
 bool blessing() { return std::getenv("OBSCURA_BLESS") != nullptr; }
 
+// As a file gives it.
+engine::Scene loaded(const apps::GlbScene& made) {
+  const TemporaryFolder folder;
+  const std::vector<uint8_t> glb = apps::glbFromScene(made);
+  std::ofstream(folder / "scene.glb", std::ios::binary).write(reinterpret_cast<const char*>(glb.data()), std::streamsize(glb.size()));
+  auto scene = engine::sceneFromGltf(folder / "scene.glb");
+  REQUIRE(scene.ok());
+  return std::move(*scene);
+}
+
 const engine::Scene& demo() {
-  static const engine::Scene scene = [] {
-    const TemporaryFolder folder;
-    const std::vector<uint8_t> glb = apps::glbFromScene(apps::makeDemoScene());
-    std::ofstream(folder / "demo.glb", std::ios::binary).write(reinterpret_cast<const char*>(glb.data()), std::streamsize(glb.size()));
-    auto loaded = engine::sceneFromGltf(folder / "demo.glb");
-    REQUIRE(loaded.ok());
-    return std::move(*loaded);
-  }();
+  static const engine::Scene scene = loaded(apps::makeDemoScene());
   return scene;
 }
 
-engine::FrameSettings frameOf(int width, int height) {
+engine::FrameSettings frameOf(int width, int height, const engine::Scene& scene = demo()) {
   engine::FrameSettings s;
   s.width = width;
   s.height = height;
-  s.camera = *engine::chooseCamera(demo(), {}, width, height);
+  s.camera = *engine::chooseCamera(scene, {}, width, height);
   s.transfer.radius = 0.8f;
   s.transfer.bias = 0.008f;
   s.transfer.filterThreshold = 0.16f;
@@ -68,10 +73,10 @@ void writeBytes(const std::string& path, const void* data, size_t size) {
   REQUIRE(engine::writeFileAtomically(path, {static_cast<const uint8_t*>(data), size}).ok());
 }
 
-void checkGolden(const std::string& name, const engine::FrameSettings& settings) {
+void checkGolden(const std::string& name, const engine::FrameSettings& settings, const engine::Scene& scene = demo()) {
   engine::Renderer renderer;
   engine::Frame frame;
-  REQUIRE(renderer.render(demo(), settings, frame).ok());
+  REQUIRE(renderer.render(scene, settings, frame).ok());
   std::string digests;
   for (const std::string& line : apps::digestLines(frame, kAovs)) digests += line + "\n";
   const engine::Image found = apps::displayPicture(frame);
@@ -144,6 +149,27 @@ TEST_CASE("golden: the demo scene in the light of an environment, before it, dis
   s.environmentBackground = true;
   s.tone = {post::ToneCurve::Neutral, 1.2f};
   checkGolden("environment", s);
+}
+
+TEST_CASE("golden: a floor that a height map displaces, by stored radiance and two layers") {
+  const engine::Scene scene = loaded(apps::makeReliefScene());
+  engine::FrameSettings s = frameOf(160, 120, scene);
+  s.transfer.albedo = post::TransferAlbedo::Radiance;
+  s.transfer.layers = 2;
+  s.separation = 0.8f;
+  checkGolden("relief", s, scene);
+}
+
+TEST_CASE("golden: implicit surfaces on a floor, sampled by dealt points, filtered by planes, lit by what surfaces send each other") {
+  const engine::Scene scene = loaded(apps::makeImplicitScene());
+  engine::FrameSettings s = frameOf(160, 120, scene);
+  s.transfer.estimator = post::Estimator::Box;
+  s.transfer.filterGuide = post::FilterGuide::Plane;
+  raster::Parallel parallel(2);
+  const auto light = engine::extendedAmbient(scene, glm::dvec3(0.6), parallel);
+  REQUIRE(light.ok());
+  s.ambientDirections = *light;
+  checkGolden("implicit", s, scene);
 }
 
 TEST_CASE("golden: the demo scene with 4 x 4 sub-pixels a pixel") {
