@@ -9,8 +9,6 @@
 #include <optional>
 #include <utility>
 
-#include <oneapi/tbb/global_control.h>
-
 #include "obscura/apps/progress.h"
 #include "obscura/apps/report.h"
 #include "obscura/apps/signals.h"
@@ -112,15 +110,6 @@ int print(const std::string& text, FILE* stream) {
   return fail({ErrorCode::CannotWrite, std::string("cannot write: ") + std::strerror(errno), "standard output", ""});
 }
 
-// More threads than cores run only if TBB is told so.
-std::optional<tbb::global_control> allowThreads(int threads) {
-  std::optional<tbb::global_control> control;
-  constexpr auto kWhat = tbb::global_control::max_allowed_parallelism;
-  if (threads > 0 && size_t(threads) > tbb::global_control::active_value(kWhat))
-    control.emplace(kWhat, size_t(threads));
-  return control;
-}
-
 }  // namespace
 
 void RenderCommand::addTo(CLI::App& program) {
@@ -205,6 +194,12 @@ Result<std::vector<Bytes>> RenderCommand::encode(const std::vector<Output>& outp
 }
 
 int RenderCommand::run() {
+  int code = kDone;
+  raster::withThreads(options_.raster.threads, [&] { code = render(); });
+  return code;
+}
+
+int RenderCommand::render() {
   endCleanlyOnSignals();
   const Result<std::vector<Output>> outputs = plan();
   if (!outputs) return fail(outputs.error());
@@ -212,7 +207,6 @@ int RenderCommand::run() {
     if (const auto writable = checkWritable(o.path); !writable) return fail(writable.error());
 
   const std::vector<Aov> aovs = aovsToRender(request_.aovs, *outputs);
-  const auto threads = allowThreads(options_.raster.threads);
   Progress progress(3, quiet_);
   const auto failed = [&](const Error& error) {
     progress.finish();

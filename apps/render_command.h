@@ -17,6 +17,7 @@ class RenderCommand {
   int run();                      // after parsing; returns the exit code
 
  private:
+  int render();
   engine::Result<std::vector<Output>> plan();
   engine::Result<engine::Scene> load(bool textures) const;
   engine::Result<std::vector<std::vector<uint8_t>>> encode(const std::vector<Output>& outputs,

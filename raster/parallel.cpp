@@ -1,7 +1,9 @@
 #include "obscura/raster/parallel.h"
 
 #include <algorithm>
+#include <atomic>
 
+#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
@@ -9,38 +11,35 @@
 
 namespace obscura::raster {
 
-struct Parallel::Arena {
-  explicit Arena(int threads) : arena(threads) {}
-  tbb::task_arena arena;
-};
-
 Parallel::Parallel(int threads) : workers_(threads > 0 ? threads : tbb::this_task_arena::max_concurrency()) {}
-Parallel::~Parallel() = default;
-Parallel::Parallel(Parallel&&) noexcept = default;
-Parallel& Parallel::operator=(Parallel&&) noexcept = default;
 
-void Parallel::forRanges(size_t count, size_t grain, const std::function<void(size_t, size_t, int)>& body) {
+// One task a worker, which takes one range after the other. No arena of its own limits the threads: between two arenas oneTBB
+// moves its workers so slowly that loops of a millisecond run on one thread, and programs that make and use thousands of
+// arenas can hang in it (oneTBB's issue 1281).
+void Parallel::forRanges(size_t count, size_t grain, const std::function<void(size_t, size_t, int)>& body) const {
   if (count == 0) return;
   grain = std::max<size_t>(grain, 1);
-  const size_t ranges = (count + grain - 1) / grain;
-  auto run = [&](size_t range, int worker) {
+  const size_t ranges = (count + grain - 1) / grain, tasks = std::min(ranges, size_t(workers_));
+  std::atomic<size_t> next{0};
+  const auto work = [&](size_t worker) {
     const FloatEnvironment environment;
-    body(range * grain, std::min(count, (range + 1) * grain), worker);
+    try {
+      for (size_t r; (r = next.fetch_add(1, std::memory_order_relaxed)) < ranges;)
+        body(r * grain, std::min(count, (r + 1) * grain), int(worker));
+    } catch (...) {
+      next.store(ranges, std::memory_order_relaxed);
+      throw;
+    }
   };
-  if (workers_ == 1 || ranges == 1) {
-    for (size_t r = 0; r < ranges; ++r) run(r, 0);
-    return;
-  }
-  auto loop = [&] {
-    tbb::parallel_for(
-        size_t(0), ranges, [&](size_t r) { run(r, tbb::this_task_arena::current_thread_index()); },
-        tbb::simple_partitioner());
-  };
-  // The caller's own arena serves if it has the right size. One more arena would be one between which oneTBB moves its
-  // workers so slowly that loops of a millisecond run on one thread.
-  if (!arena_ && tbb::this_task_arena::max_concurrency() == workers_) return loop();
-  if (!arena_) arena_ = std::make_unique<Arena>(workers_);
-  arena_->arena.execute(loop);
+  if (tasks == 1) work(0);
+  else tbb::parallel_for(size_t(0), tasks, work, tbb::simple_partitioner());
+}
+
+void withThreads(int threads, const std::function<void()>& body) {
+  if (threads <= tbb::this_task_arena::max_concurrency()) return body();
+  const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, size_t(threads));
+  tbb::task_arena arena(threads);
+  arena.execute(body);
 }
 
 }  // namespace obscura::raster

@@ -3,9 +3,8 @@
 
 #include <cmath>
 
-#include <oneapi/tbb/global_control.h>
-
 #include "obscura/engine/crop.h"
+#include "obscura/raster/parallel.h"
 #include "frame_checks.h"
 
 using namespace obscura;
@@ -65,33 +64,34 @@ engine::FrameSettings settingsOf(const TestScene& scene, uint32_t seed) {
 }  // namespace
 
 TEST_CASE("crop: sixteen crops, each by threads, target, tile size and skipping of its own, make up the whole frame") {
-  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, 8);
-  const std::vector<raster::Target> targets = raster::supportedTargets();
-  int seen = 0;
-  for (uint32_t seed : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 10u, 13u, 16u, 19u}) {
-    const TestScene soup = soupScene(seed);
-    const engine::Scene scene = sceneFrom(soup);
-    engine::FrameSettings s = settingsOf(soup, seed);
-    const std::vector<engine::Image> expected = imagesOf(frameOf(scene, s));
-    std::vector<engine::Image> stitched = expected;
-    for (engine::Image& image : stitched) std::fill(image.bytes.begin(), image.bytes.end(), uint8_t(0xA5));
-    Random random(seed);
-    uint32_t k = seed;
-    for (const Window& w : sixteenth(s.width, s.height, random)) {
-      s.crop = w;
-      const raster::Settings raster{1 << k % 4, targets[k % targets.size()], 16 << k % 3, k % 5 != 0};
-      const engine::Frame frame = frameOf(scene, s, raster, ++k % 16 == 0);
-      CHECK((frame.x == w.x && frame.y == w.y && frame.imageWidth == s.width && frame.imageHeight == s.height));
-      const std::vector<engine::Image> images = imagesOf(frame);
-      for (size_t i = 0; i < images.size(); ++i) paste(images[i], w, stitched[i]);
+  raster::withThreads(8, [] {
+    const std::vector<raster::Target> targets = raster::supportedTargets();
+    int seen = 0;
+    for (uint32_t seed : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 10u, 13u, 16u, 19u}) {
+      const TestScene soup = soupScene(seed);
+      const engine::Scene scene = sceneFrom(soup);
+      engine::FrameSettings s = settingsOf(soup, seed);
+      const std::vector<engine::Image> expected = imagesOf(frameOf(scene, s));
+      std::vector<engine::Image> stitched = expected;
+      for (engine::Image& image : stitched) std::fill(image.bytes.begin(), image.bytes.end(), uint8_t(0xA5));
+      Random random(seed);
+      uint32_t k = seed;
+      for (const Window& w : sixteenth(s.width, s.height, random)) {
+        s.crop = w;
+        const raster::Settings raster{1 << k % 4, targets[k % targets.size()], 16 << k % 3, k % 5 != 0};
+        const engine::Frame frame = frameOf(scene, s, raster, ++k % 16 == 0);
+        CHECK((frame.x == w.x && frame.y == w.y && frame.imageWidth == s.width && frame.imageHeight == s.height));
+        const std::vector<engine::Image> images = imagesOf(frame);
+        for (size_t i = 0; i < images.size(); ++i) paste(images[i], w, stitched[i]);
+      }
+      for (size_t i = 0; i < expected.size(); ++i) {
+        INFO("seed " << seed << ", " << (i < allAovs().size() ? engine::allAovs()[i].name : "display") << ", border " << s.border);
+        REQUIRE((stitched[i].bytes == expected[i].bytes));
+      }
+      for (const uint8_t b : expected.back().bytes) seen += b != 0;
     }
-    for (size_t i = 0; i < expected.size(); ++i) {
-      INFO("seed " << seed << ", " << (i < allAovs().size() ? engine::allAovs()[i].name : "display") << ", border " << s.border);
-      REQUIRE((stitched[i].bytes == expected[i].bytes));
-    }
-    for (const uint8_t b : expected.back().bytes) seen += b != 0;
-  }
-  CHECK(seen > 10000);
+    CHECK(seen > 10000);
+  });
 }
 
 TEST_CASE("frame: O alone, without W and albedo, is the O of a frame with all") {
@@ -107,29 +107,30 @@ TEST_CASE("frame: O alone, without W and albedo, is the O of a frame with all") 
 }
 
 TEST_CASE("crop: one crop has the same bits by all threads, targets, tile sizes and the scalar twins") {
-  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, 8);
-  const TestScene soup = soupScene(5);
-  const engine::Scene scene = sceneFrom(soup);
-  engine::FrameSettings s = settingsOf(soup, 5);
-  s.border = 11;
-  const std::vector<engine::Image> whole = imagesOf(frameOf(scene, s));
-  s.crop = Window{0, 13, 37, 21};
-  const auto check = [&](const engine::Frame& frame) {
-    const std::vector<engine::Image> images = imagesOf(frame);
-    for (size_t i = 0; i < images.size(); ++i) {
-      engine::Image same = whole[i];
-      paste(images[i], *s.crop, same);
-      REQUIRE((same.bytes == whole[i].bytes));
-    }
-  };
-  check(frameOf(scene, s, {}, true));
-  for (raster::Target target : raster::supportedTargets())
-    for (int tile : {16, 32, 64})
-      for (int count : {1, 3})
-        for (bool skip : {true, false}) {
-          INFO(raster::targetName(target) << ", tile " << tile << ", " << count << " threads, skip " << skip);
-          check(frameOf(scene, s, {count, target, tile, skip}));
-        }
+  raster::withThreads(8, [] {
+    const TestScene soup = soupScene(5);
+    const engine::Scene scene = sceneFrom(soup);
+    engine::FrameSettings s = settingsOf(soup, 5);
+    s.border = 11;
+    const std::vector<engine::Image> whole = imagesOf(frameOf(scene, s));
+    s.crop = Window{0, 13, 37, 21};
+    const auto check = [&](const engine::Frame& frame) {
+      const std::vector<engine::Image> images = imagesOf(frame);
+      for (size_t i = 0; i < images.size(); ++i) {
+        engine::Image same = whole[i];
+        paste(images[i], *s.crop, same);
+        REQUIRE((same.bytes == whole[i].bytes));
+      }
+    };
+    check(frameOf(scene, s, {}, true));
+    for (raster::Target target : raster::supportedTargets())
+      for (int tile : {16, 32, 64})
+        for (int count : {1, 3})
+          for (bool skip : {true, false}) {
+            INFO(raster::targetName(target) << ", tile " << tile << ", " << count << " threads, skip " << skip);
+            check(frameOf(scene, s, {count, target, tile, skip}));
+          }
+  });
 }
 
 TEST_CASE("crop: a renderer that draws crops, borders and whole frames in turn mixes nothing up") {

@@ -1,12 +1,11 @@
 // Height maps in whole frames: the scene that obscura-scene writes.
 #include <fstream>
 
-#include <oneapi/tbb/global_control.h>
-
 #include "obscura/apps/demo_surfaces.h"
 #include "obscura/apps/glb_writer.h"
 #include "obscura/engine/camera_choice.h"
 #include "obscura/engine/gltf.h"
+#include "obscura/raster/parallel.h"
 #include "obscura/tests/temporary_folder.h"
 #include "frame_checks.h"
 
@@ -48,20 +47,21 @@ void checkSame(const engine::Frame& a, const engine::Frame& b) {
 }  // namespace
 
 TEST_CASE("relief frame: all planes have the bits of the reference on every target, with any tiles, threads, skipped or not") {
-  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, 8);
-  for (const post::TransferAlbedo albedo : {post::TransferAlbedo::Neighbour, post::TransferAlbedo::Radiance}) {
-    engine::FrameSettings s = settingsOf(67, 45);
-    s.transfer.albedo = albedo;
-    s.transfer.layers = albedo == post::TransferAlbedo::Radiance ? 2 : 1;
-    s.separation = s.transfer.radius;
-    const engine::Frame expected = frameOf(relief(), s, {}, true);
-    for (raster::Target target : raster::supportedTargets())
-      for (int tile : {16, 32, 64}) {
-        INFO(raster::targetName(target) << ", tiles of " << tile);
-        checkSame(frameOf(relief(), s, {tile == 32 ? 1 : 3, target, tile, true}), expected);
-        if (tile == 64) checkSame(frameOf(relief(), s, {2, target, tile, false}), expected);
-      }
-  }
+  raster::withThreads(8, [] {
+    for (const post::TransferAlbedo albedo : {post::TransferAlbedo::Neighbour, post::TransferAlbedo::Radiance}) {
+      engine::FrameSettings s = settingsOf(67, 45);
+      s.transfer.albedo = albedo;
+      s.transfer.layers = albedo == post::TransferAlbedo::Radiance ? 2 : 1;
+      s.separation = s.transfer.radius;
+      const engine::Frame expected = frameOf(relief(), s, {}, true);
+      for (raster::Target target : raster::supportedTargets())
+        for (int tile : {16, 32, 64}) {
+          INFO(raster::targetName(target) << ", tiles of " << tile);
+          checkSame(frameOf(relief(), s, {tile == 32 ? 1 : 3, target, tile, true}), expected);
+          if (tile == 64) checkSame(frameOf(relief(), s, {2, target, tile, false}), expected);
+        }
+    }
+  });
 }
 
 TEST_CASE("relief frame: a crop is what the whole frame shows, supersampled or not") {

@@ -10,8 +10,6 @@
 #include <sstream>
 #include <tuple>
 
-#include <oneapi/tbb/global_control.h>
-
 #include "obscura/apps/demo_scene.h"
 #include "obscura/apps/demo_surfaces.h"
 #include "obscura/apps/pictures.h"
@@ -20,6 +18,7 @@
 #include "obscura/engine/extended_ambient.h"
 #include "obscura/engine/gltf.h"
 #include "obscura/engine/image_file.h"
+#include "obscura/raster/parallel.h"
 #include "obscura/tests/temporary_folder.h"
 
 using namespace obscura;
@@ -179,60 +178,62 @@ TEST_CASE("golden: the demo scene with 4 x 4 sub-pixels a pixel") {
 }
 
 TEST_CASE("golden: threads, targets, tile sizes, skipping and the scalar twins give the same digest of every plane") {
-  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, 8);
-  engine::FrameSettings settings = frameOf(100, 75);
-  engine::Frame frame;
-  auto digests = [&](const raster::Settings& raster, bool reference) {
-    engine::Renderer renderer(raster, reference);
-    REQUIRE(renderer.render(demo(), settings, frame).ok());
-    return apps::digestLines(frame, kAovs);
-  };
-  std::vector<std::string> expected = digests({}, true);
-  for (raster::Target target : raster::supportedTargets())
-    for (int tile : {16, 32, 64})
-      for (int count : {1, 2, 3, 8})
-        for (bool skip : {true, false}) {
-          INFO(raster::targetName(target) << ", tile " << tile << ", " << count << " threads, skip " << skip
-                                          << "; repeat: obscura render SCENE --digest --target " << raster::targetName(target)
-                                          << " --tile " << tile << " --threads " << count << (skip ? "" : " --no-skip"));
-          REQUIRE(digests({count, target, tile, skip}, false) == expected);
-        }
-  for (const auto& [estimator, guide] : {std::pair(post::Estimator::Sobol, post::FilterGuide::Depth),
-                                         std::pair(post::Estimator::Box, post::FilterGuide::Plane),
-                                         std::pair(post::Estimator::Lines, post::FilterGuide::Plane)}) {
-    settings.transfer.estimator = estimator;
-    settings.transfer.filterGuide = guide;
-    settings.transfer.layers = estimator == post::Estimator::Sobol ? 1 : 2;
-    settings.separation = 0.8f;
-    expected = digests({}, true);
-    for (raster::Target target : raster::supportedTargets())
-      for (int count : {1, 3, 8}) {
-        INFO(raster::targetName(target) << ", " << count << " threads, estimator " << int(estimator));
-        REQUIRE(digests({count, target, 16, count != 3}, false) == expected);
-      }
-  }
-}
-
-TEST_CASE("golden: supersampled frames, too, have one digest for threads, targets, tile sizes and the scalar twins") {
-  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, 8);
-  engine::FrameSettings settings = frameOf(37, 29);
-  for (int supersample : {2, 4}) {
-    settings.supersample = supersample;
-    settings.transfer.filterGuide = supersample == 4 ? post::FilterGuide::Plane : post::FilterGuide::Depth;
+  raster::withThreads(8, [] {
+    engine::FrameSettings settings = frameOf(100, 75);
+    engine::Frame frame;
     auto digests = [&](const raster::Settings& raster, bool reference) {
       engine::Renderer renderer(raster, reference);
-      engine::Frame frame;
       REQUIRE(renderer.render(demo(), settings, frame).ok());
       return apps::digestLines(frame, kAovs);
     };
-    const std::vector<std::string> expected = digests({}, true);
+    std::vector<std::string> expected = digests({}, true);
     for (raster::Target target : raster::supportedTargets())
-      for (int tile : {16, 64})
+      for (int tile : {16, 32, 64})
+        for (int count : {1, 2, 3, 8})
+          for (bool skip : {true, false}) {
+            INFO(raster::targetName(target) << ", tile " << tile << ", " << count << " threads, skip " << skip
+                                            << "; repeat: obscura render SCENE --digest --target " << raster::targetName(target)
+                                            << " --tile " << tile << " --threads " << count << (skip ? "" : " --no-skip"));
+            REQUIRE(digests({count, target, tile, skip}, false) == expected);
+          }
+    for (const auto& [estimator, guide] : {std::pair(post::Estimator::Sobol, post::FilterGuide::Depth),
+                                           std::pair(post::Estimator::Box, post::FilterGuide::Plane),
+                                           std::pair(post::Estimator::Lines, post::FilterGuide::Plane)}) {
+      settings.transfer.estimator = estimator;
+      settings.transfer.filterGuide = guide;
+      settings.transfer.layers = estimator == post::Estimator::Sobol ? 1 : 2;
+      settings.separation = 0.8f;
+      expected = digests({}, true);
+      for (raster::Target target : raster::supportedTargets())
         for (int count : {1, 3, 8}) {
-          INFO(raster::targetName(target) << ", tile " << tile << ", " << count << " threads, supersample " << supersample);
-          REQUIRE(digests({count, target, tile, count != 3}, false) == expected);
+          INFO(raster::targetName(target) << ", " << count << " threads, estimator " << int(estimator));
+          REQUIRE(digests({count, target, 16, count != 3}, false) == expected);
         }
-  }
+    }
+  });
+}
+
+TEST_CASE("golden: supersampled frames, too, have one digest for threads, targets, tile sizes and the scalar twins") {
+  raster::withThreads(8, [] {
+    engine::FrameSettings settings = frameOf(37, 29);
+    for (int supersample : {2, 4}) {
+      settings.supersample = supersample;
+      settings.transfer.filterGuide = supersample == 4 ? post::FilterGuide::Plane : post::FilterGuide::Depth;
+      auto digests = [&](const raster::Settings& raster, bool reference) {
+        engine::Renderer renderer(raster, reference);
+        engine::Frame frame;
+        REQUIRE(renderer.render(demo(), settings, frame).ok());
+        return apps::digestLines(frame, kAovs);
+      };
+      const std::vector<std::string> expected = digests({}, true);
+      for (raster::Target target : raster::supportedTargets())
+        for (int tile : {16, 64})
+          for (int count : {1, 3, 8}) {
+            INFO(raster::targetName(target) << ", tile " << tile << ", " << count << " threads, supersample " << supersample);
+            REQUIRE(digests({count, target, tile, count != 3}, false) == expected);
+          }
+    }
+  });
 }
 
 TEST_CASE("golden: a supersampled frame holds means and nearest sub-pixels of the frame so many times as large") {

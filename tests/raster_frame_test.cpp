@@ -6,8 +6,7 @@
 #include <xmmintrin.h>
 #endif
 
-#include <oneapi/tbb/global_control.h>
-
+#include "obscura/raster/parallel.h"
 #include "test_scene.h"
 
 using namespace obscura;
@@ -39,19 +38,20 @@ int covered(const GBuffer& g) {
 }  // namespace
 
 TEST_CASE("frame: threads, targets, tile sizes and skipping do not change a bit") {
-  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, 8);
-  for (uint32_t seed : {2u, 4u, 7u, 15u, 25u}) {
-    const TestScene s = soupScene(seed);
-    const GBuffer expected = reference(s);
-    CHECK(covered(expected) > 0);
-    for (Target target : supportedTargets())
-      for (int tile : {16, 32, 64})
-        for (int count : {1, 2, 3, 8})
-          for (bool skip : {true, false}) {
-            INFO("seed " << seed << " target " << targetName(target) << " tile " << tile << " threads " << count << " skip " << skip);
-            REQUIRE(firstDifference(renderWith(s, {count, target, tile, skip}), expected) == "");
-          }
-  }
+  raster::withThreads(8, [] {
+    for (uint32_t seed : {2u, 4u, 7u, 15u, 25u}) {
+      const TestScene s = soupScene(seed);
+      const GBuffer expected = reference(s);
+      CHECK(covered(expected) > 0);
+      for (Target target : supportedTargets())
+        for (int tile : {16, 32, 64})
+          for (int count : {1, 2, 3, 8})
+            for (bool skip : {true, false}) {
+              INFO("seed " << seed << " target " << targetName(target) << " tile " << tile << " threads " << count << " skip " << skip);
+              REQUIRE(firstDifference(renderWith(s, {count, target, tile, skip}), expected) == "");
+            }
+    }
+  });
 }
 
 TEST_CASE("frame: every kernel equals its scalar twin on random scenes") {

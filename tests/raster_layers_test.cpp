@@ -3,8 +3,7 @@
 
 #include <algorithm>
 
-#include <oneapi/tbb/global_control.h>
-
+#include "obscura/raster/parallel.h"
 #include "raster_checks.h"
 
 using namespace obscura;
@@ -253,21 +252,22 @@ TEST_CASE("layers: a leaf hides only where its texture covers, in front, behind 
 }
 
 TEST_CASE("layers: threads, targets, tile sizes and skipping do not change a bit") {
-  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, 8);
-  for (uint32_t seed : {2u, 4u, 7u, 15u, 21u}) {
-    const TestScene s = soupScene(seed);
-    const GBuffer all = referenceOf(s, kAllLayers), depths = referenceOf(s, kDepths);
-    CHECK(firstDifference("depth2", all.depth2, depths.depth2) == "");
-    for (Target target : supportedTargets())
-      for (int tile : {16, 32, 64})
-        for (int count : {1, 3})
-          for (bool skip : {true, false}) {
-            const Settings settings{count, target, tile, skip};
-            INFO("seed " << seed << " target " << targetName(target) << " tile " << tile << " threads " << count << " skip " << skip);
-            REQUIRE(firstDifference(render(s, settings, nullptr, kAllLayers), all) == "");
-            REQUIRE(firstDifference(render(s, settings, nullptr, kDepths), depths) == "");
-          }
-  }
+  raster::withThreads(8, [] {
+    for (uint32_t seed : {2u, 4u, 7u, 15u, 21u}) {
+      const TestScene s = soupScene(seed);
+      const GBuffer all = referenceOf(s, kAllLayers), depths = referenceOf(s, kDepths);
+      CHECK(firstDifference("depth2", all.depth2, depths.depth2) == "");
+      for (Target target : supportedTargets())
+        for (int tile : {16, 32, 64})
+          for (int count : {1, 3})
+            for (bool skip : {true, false}) {
+              const Settings settings{count, target, tile, skip};
+              INFO("seed " << seed << " target " << targetName(target) << " tile " << tile << " threads " << count << " skip " << skip);
+              REQUIRE(firstDifference(render(s, settings, nullptr, kAllLayers), all) == "");
+              REQUIRE(firstDifference(render(s, settings, nullptr, kDepths), depths) == "");
+            }
+    }
+  });
 }
 
 TEST_CASE("layers: every kernel equals its scalar twin on random scenes") {

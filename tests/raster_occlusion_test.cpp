@@ -3,11 +3,10 @@
 
 #include <cmath>
 
-#include <oneapi/tbb/global_control.h>
-
 #include "raster_checks.h"
 
 #include "obscura/raster/cull.h"
+#include "obscura/raster/parallel.h"
 #include "obscura/raster/view.h"
 
 using namespace obscura;
@@ -79,33 +78,34 @@ TestScene crowd(bool perspectiveView) {
 }  // namespace
 
 TEST_CASE("occlusion: a crowd drawn front to back has the bits of the reference, whatever threads, target, tile and skipping") {
-  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, 8);
-  for (bool perspectiveView : {true, false}) {
-    const TestScene s = crowd(perspectiveView);
-    GBuffer expected;
-    renderReference(s.list(), s.camera, s.width, s.height, kAllPlanes, expected);
-    std::string counts;
-    for (Target target : supportedTargets())
-      for (int tile : {16, 32, 64})
-        for (int count : {1, 3})
-          for (bool skip : {true, false}) {
-            INFO(targetName(target) << " tile " << tile << " threads " << count << " skip " << skip);
-            Statistics q;
-            REQUIRE(firstDifference(render(s, {count, target, tile, skip}, &q), expected) == "");
-            CHECK(q.trianglesCulled + q.facingAway + q.outside + q.hidden + q.invalid + q.drawn == q.triangles);
-            if (!skip) {
-              CHECK(q.clustersHidden + q.instancesHidden + q.hidden == 0);
-              continue;
+  raster::withThreads(8, [] {
+    for (bool perspectiveView : {true, false}) {
+      const TestScene s = crowd(perspectiveView);
+      GBuffer expected;
+      renderReference(s.list(), s.camera, s.width, s.height, kAllPlanes, expected);
+      std::string counts;
+      for (Target target : supportedTargets())
+        for (int tile : {16, 32, 64})
+          for (int count : {1, 3})
+            for (bool skip : {true, false}) {
+              INFO(targetName(target) << " tile " << tile << " threads " << count << " skip " << skip);
+              Statistics q;
+              REQUIRE(firstDifference(render(s, {count, target, tile, skip}, &q), expected) == "");
+              CHECK(q.trianglesCulled + q.facingAway + q.outside + q.hidden + q.invalid + q.drawn == q.triangles);
+              if (!skip) {
+                CHECK(q.clustersHidden + q.instancesHidden + q.hidden == 0);
+                continue;
+              }
+              CHECK(q.clustersHidden > 100);
+              CHECK(q.hidden > 30);
+              // What was skipped is the same for all, too.
+              const std::string found = std::to_string(q.clustersHidden) + " " + std::to_string(q.instancesHidden) + " " + std::to_string(q.hidden) + " " +
+                                        std::to_string(q.drawn);
+              if (counts.empty()) counts = found;
+              CHECK(found == counts);
             }
-            CHECK(q.clustersHidden > 100);
-            CHECK(q.hidden > 30);
-            // What was skipped is the same for all, too.
-            const std::string found = std::to_string(q.clustersHidden) + " " + std::to_string(q.instancesHidden) + " " + std::to_string(q.hidden) + " " +
-                                      std::to_string(q.drawn);
-            if (counts.empty()) counts = found;
-            CHECK(found == counts);
-          }
-  }
+    }
+  });
 }
 
 TEST_CASE("occlusion: a renderer that drew a crowd forgets it") {
