@@ -55,8 +55,8 @@ struct Renderer::State {
   void rasterize(const raster::DrawList& list, const FrameSettings& s, const raster::PlaneSet& planes, const raster::Window& w,
                  raster::GBuffer& out);
   raster::Window windowToDraw(const raster::DrawList& list, const FrameSettings& s, const FrameNeeds& needs);
-  void askPixels(const FrameSettings& s, const FrameNeeds& needs, int firstRow, int endRow, post::TransferInput& in);
-  post::TransferStatistics transferSums(post::TransferInput& in, int firstRow, int endRow);
+  std::optional<post::AskedInput> asking(const FrameSettings& s, const FrameNeeds& needs, const raster::GBuffer& g) const;
+  post::TransferStatistics transferSums(post::TransferInput& in, const std::optional<post::AskedInput>& question, int firstRow, int endRow);
 
   static constexpr size_t kRowsPerTask = 8;
 
@@ -127,18 +127,17 @@ void Renderer::State::drawGBuffer(const Scene& scene, const FrameSettings& s, co
   out.imageWidth = s.width, out.imageHeight = s.height;
 }
 
-// Leaves out what nobody reads, where there may be such: around a crop, and where nothing is reflected.
-void Renderer::State::askPixels(const FrameSettings& s, const FrameNeeds& needs, int firstRow, int endRow, post::TransferInput& in) {
-  if (reference || !settings.skip || !(needs.onlyLit || window.width > filteredWindow(s).width)) return;
-  post::AskedInput question{in.g, part, s.transfer.filter, needs.onlyLit, {}};
+// What may be left out as nobody reads it: around a crop, and where nothing is reflected. Empty where there is no such.
+std::optional<post::AskedInput> Renderer::State::asking(const FrameSettings& s, const FrameNeeds& needs, const raster::GBuffer& g) const {
+  if (reference || !settings.skip || !(needs.onlyLit || window.width > filteredWindow(s).width)) return std::nullopt;
+  post::AskedInput question{&g, part, s.transfer.filter, needs.onlyLit, {}};
   if (!needs.radiance) question.ambient = ambient.instances;
-  asked.resize((in.g->width + 15) / 16, in.g->height);
-  forRows(firstRow, endRow, [&](int y0, int y1) { post::askedPixels(question, y0, y1, asked); });
-  in.asked = &asked;
+  return question;
 }
 
 // Of the rows first ... end - 1.
-post::TransferStatistics Renderer::State::transferSums(post::TransferInput& in, int firstRow, int endRow) {
+post::TransferStatistics Renderer::State::transferSums(post::TransferInput& in, const std::optional<post::AskedInput>& question,
+                                                       int firstRow, int endRow) {
   const int w = in.g->width, h = in.g->height;
   sums = post::makeTransferSums(in, std::move(sums));
   if (reference) {
@@ -153,9 +152,15 @@ post::TransferStatistics Renderer::State::transferSums(post::TransferInput& in, 
     });
     in.bounds = &bounds;
   }
+  if (question) {
+    asked.resize((w + 15) / 16, h);
+    in.asked = &asked;
+  }
   std::vector<post::TransferStatistics> found(size_t(parallel.workers()));
-  parallel.forRanges(size_t(endRow - firstRow), kRowsPerTask, [&](size_t y0, size_t y1, int worker) {
-    found[size_t(worker)].add(post::ambientTransfer(in, firstRow + int(y0), firstRow + int(y1), sums, target));
+  parallel.forRanges(size_t(endRow - firstRow), kRowsPerTask, [&](size_t begin, size_t end, int worker) {
+    const int y0 = firstRow + int(begin), y1 = firstRow + int(end);
+    if (question) post::askedPixels(*question, y0, y1, asked);
+    found[size_t(worker)].add(post::ambientTransfer(in, y0, y1, sums, target));
   });
   post::TransferStatistics all;
   for (const post::TransferStatistics& f : found) all.add(f);
@@ -181,8 +186,7 @@ void Renderer::State::drawTransfer(const FrameSettings& s, const FrameNeeds& nee
     }
     const raster::Window filtered = filteredWindow(s);
     const int firstRow = filtered.y - window.y, endRow = firstRow + filtered.height;
-    askPixels(s, needs, firstRow, endRow, in);
-    out.transferStatistics = transferSums(in, firstRow, endRow);
+    out.transferStatistics = transferSums(in, asking(s, needs, g), firstRow, endRow);
     out.timings.transfer = watch.lap();
 
     post::Transfer& transfer = more() ? drawnTransfer : out.transfer;

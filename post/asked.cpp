@@ -1,7 +1,7 @@
 #include "obscura/post/asked.h"
 
 #include <algorithm>
-#include <vector>
+#include <limits>
 
 namespace obscura::post {
 namespace {
@@ -10,49 +10,55 @@ constexpr int kSegment = 16;
 // The filter's window of pixel p is p - 2 ... p + 1 on both axes (depth_filter.h), so that q lies in those of q - 1 ... q + 2.
 constexpr int kBefore = 1, kAfter = 2;
 
-bool isBlack(const glm::vec3& c) { return !(c.x > 0 || c.y > 0 || c.z > 0); }
+// Answers for segments of 16 pixels. Most are lit, and then one pixel says so: planes are hardly read.
+class Asked {
+ public:
+  explicit Asked(const AskedInput& in) : in_(in), g_(*in.g), before_(in.filter ? kBefore : 0), after_(in.filter ? kAfter : 0) {}
 
-// 1 for each pixel of the row that asks; `row` has g.width elements, 0 outside of the part.
-void askingPixels(const AskedInput& in, int y, std::vector<uint8_t>& row) {
-  const raster::GBuffer& g = *in.g;
-  const int x0 = in.part.x, x1 = in.part.x + in.part.width;
-  if (!in.onlyLit) {
-    std::fill(row.begin() + x0, row.begin() + x1, uint8_t(1));
-    return;
+  void rows(int y0, int y1, raster::Plane<uint8_t>& asked) const {
+    // Row y0 + 2 is in the windows' reach of all four rows from y0 on.
+    constexpr int kBand = kBefore + kAfter + 1;
+    for (int y = y0; y < y1; y += kBand)
+      for (int s = 0; s < asked.width(); ++s) {
+        const bool all = in_.filter && asks(s, y + kAfter);
+        for (int row = y; row < std::min(y + kBand, y1); ++row) asked.at(s, row) = all || reaches(s, row);
+      }
   }
-  const float *r = g.albedo[0].row(y), *gr = g.albedo[1].row(y), *b = g.albedo[2].row(y);
-  for (int x = x0; x < x1; ++x) row[size_t(x)] = uint8_t((r[x] > 0) | (gr[x] > 0) | (b[x] > 0));
-  if (in.ambient.empty()) return;
-  const uint32_t* id = g.instance.row(y);
-  for (int x = x0; x < x1; ++x)
-    if (row[size_t(x)] && id[x] < in.ambient.size() && isBlack(in.ambient[id[x]])) row[size_t(x)] = 0;
-}
 
-// Sets the segments of `segments` whose pixels lie in the windows of pixels that ask.
-void markSegments(const std::vector<uint8_t>& row, bool filter, uint8_t* segments) {
-  const int width = int(row.size()), before = filter ? kBefore : 0, after = filter ? kAfter : 0;
-  for (int x = 0; x < width; x += kSegment) {
-    const auto first = row.begin() + std::max(x - before, 0), end = row.begin() + std::min(x + kSegment + after, width);
-    uint8_t any = 0;
-    for (auto p = first; p < end; ++p) any |= *p;
-    segments[x / kSegment] |= any;
+ private:
+  // A pixel asks whose window meets segment s of row y.
+  bool reaches(int s, int y) const {
+    for (int row = y - before_; row <= y + after_; ++row)
+      if (asks(s, row)) return true;
+    return false;
   }
-}
+
+  // A pixel of row y asks whose window meets the columns of segment s.
+  bool asks(int s, int y) const {
+    if (y < in_.part.y || y >= in_.part.y + in_.part.height) return false;
+    const int first = std::max(s * kSegment - before_, in_.part.x);
+    const int end = std::min((s + 1) * kSegment + after_, in_.part.x + in_.part.width);
+    for (int x = first; x < end; ++x)
+      if (!in_.onlyLit || isLit(x, y)) return true;
+    return false;
+  }
+
+  // Or empty: that is cheaper to let pass than to find out that all of a sky asks for nothing.
+  bool isLit(int x, int y) const {
+    if (!(g_.albedo[0].at(x, y) > 0 || g_.albedo[1].at(x, y) > 0 || g_.albedo[2].at(x, y) > 0))
+      return !(g_.depth.at(x, y) < std::numeric_limits<float>::infinity());
+    if (in_.ambient.empty() || g_.instance.at(x, y) >= in_.ambient.size()) return true;
+    const glm::vec3& la = in_.ambient[g_.instance.at(x, y)];
+    return la.x > 0 || la.y > 0 || la.z > 0;
+  }
+
+  const AskedInput& in_;
+  const raster::GBuffer& g_;
+  const int before_, after_;
+};
 
 }  // namespace
 
-void askedPixels(const AskedInput& in, int y0, int y1, raster::Plane<uint8_t>& asked) {
-  const int before = in.filter ? kBefore : 0, after = in.filter ? kAfter : 0;
-  for (int y = y0; y < y1; ++y) std::fill_n(asked.row(y), asked.width(), uint8_t(0));
-  std::vector<uint8_t> row(size_t(in.g->width)), segments(size_t(asked.width()));
-  const int first = std::max(y0 - before, in.part.y), end = std::min(y1 + after, in.part.y + in.part.height);
-  for (int y = first; y < end; ++y) {
-    askingPixels(in, y, row);
-    std::fill(segments.begin(), segments.end(), uint8_t(0));
-    markSegments(row, in.filter, segments.data());
-    for (int k = std::max(y - after, y0); k <= std::min(y + before, y1 - 1); ++k)
-      for (size_t s = 0; s < segments.size(); ++s) asked.row(k)[s] |= segments[s];
-  }
-}
+void askedPixels(const AskedInput& in, int y0, int y1, raster::Plane<uint8_t>& asked) { Asked(in).rows(y0, y1, asked); }
 
 }  // namespace obscura::post

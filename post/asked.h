@@ -16,7 +16,8 @@ struct AskedInput {
   const raster::GBuffer* g = nullptr;
   raster::Window part;  // of g, in its pixels: what is given
   bool filter = true;   // the depth filter adds up windows
-  // false: O or W of every pixel of the part is wanted. true: only the colour, so pixels of albedo 0 ask for nothing.
+  // false: O or W of every pixel of the part is wanted. true: only the colour, so pixels of albedo 0 ask for nothing, but
+  // for empty ones, which cost nothing in any case.
   bool onlyLit = false;
   // With onlyLit: La by the G-buffer's instance ids, as in AmbientLight; instances of La = 0 ask for nothing. Must be empty
   // where a pixel gets other light than La through the sums (TransferAlbedo::Radiance).

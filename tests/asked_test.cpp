@@ -1,6 +1,8 @@
 // What nobody reads of the ambient transfer is not computed, and no bit of what is read changes.
 #include <catch2/catch.hpp>
 
+#include <limits>
+
 #include "obscura/post/asked.h"
 #include "frame_checks.h"
 
@@ -40,12 +42,13 @@ TEST_CASE("asked: sixteen pixels of a row are asked for where the filter's windo
   Random random(1);
   for (int round = 0; round < 60; ++round) {
     raster::PlaneSet planes;
-    planes.albedo = planes.instance = true;
+    planes.depth = planes.albedo = planes.instance = true;
     raster::GBuffer g(random.integer(1, 70), random.integer(1, 12), planes);
     const std::vector<glm::vec3> ambient = {{0, 0, 0}, {0, 0, 2}};
     for (int y = 0; y < g.height; ++y)
       for (int x = 0; x < g.width; ++x) {
         g.instance.at(x, y) = uint32_t(random.integer(0, 2));
+        g.depth.at(x, y) = random.integer(0, 90) == 0 ? std::numeric_limits<float>::infinity() : 1;
         for (int c = 0; c < 3; ++c) g.albedo[c].at(x, y) = random.integer(0, 60) == 0 ? 0.5f : 0;
       }
     post::AskedInput in{&g, {}, round % 2 == 0, round % 3 != 0, {}};
@@ -59,7 +62,7 @@ TEST_CASE("asked: sixteen pixels of a row are asked for where the filter's windo
       for (int x = in.part.x; x < in.part.x + in.part.width; ++x) {
         const bool reflects = g.albedo[0].at(x, y) > 0 || g.albedo[1].at(x, y) > 0 || g.albedo[2].at(x, y) > 0;
         const bool arrives = in.ambient.empty() || g.instance.at(x, y) != 0;
-        if (in.onlyLit && !(reflects && arrives)) continue;
+        if (in.onlyLit && !(reflects && arrives) && g.depth.at(x, y) == 1) continue;
         for (int v = y - 2 * in.filter; v <= y + in.filter; ++v)
           for (int u = x - 2 * in.filter; u <= x + in.filter; ++u)
             if (u >= 0 && v >= 0 && u < g.width && v < g.height) expected.at(u / 16, v) = 1;
