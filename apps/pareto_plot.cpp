@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <map>
 
 #include "obscura/apps/pareto_report.h"
@@ -76,18 +77,19 @@ std::string scriptOf(const std::string& terminal, const std::vector<ParetoScene>
 // gnuplot's standard output on this script; empty if it cannot be run or fails.
 std::vector<uint8_t> plotted(const std::string& script) {
   std::vector<uint8_t> out;
-  char name[] = "/tmp/obscura-plot-XXXXXX";
-  const int file = mkstemp(name);
+  std::error_code none;
+  std::string name = (std::filesystem::temp_directory_path(none) / "obscura-plot-XXXXXX").string();
+  const int file = none ? -1 : mkstemp(name.data());
   if (file < 0) return out;
   const bool written = write(file, script.data(), script.size()) == ssize_t(script.size());
   close(file);
-  if (FILE* pipe = written ? popen((std::string("gnuplot ") + name + " 2> /dev/null").c_str(), "r") : nullptr) {
+  if (FILE* pipe = written ? popen(("gnuplot '" + name + "' 2> /dev/null").c_str(), "r") : nullptr) {
     uint8_t part[65536];
     while (const size_t n = std::fread(part, 1, sizeof part, pipe)) out.insert(out.end(), part, part + n);
     const int status = pclose(pipe);
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) out.clear();
   }
-  unlink(name);
+  unlink(name.c_str());
   return out;
 }
 
