@@ -87,7 +87,7 @@ void ParetoBenchmark::addTo(CLI::App& app, int& status) {
   c->add_option("--frames", frames, "measured for each row, in turns, after one that is not")
       ->check(CLI::Range(1, 10000))->capture_default_str();
   options.addTo(*c);
-  removeEstimatorOptions(*c, {"--radius", "--membership", "--bias", "--silhouette-bound", "--filter-threshold"});
+  removeEstimatorOptions(*c, options, {"--radius", "--membership", "--bias", "--silhouette-bound", "--filter-threshold"});
   const auto list = [&](const char* name, auto& values, const char* what, const CLI::Validator& valid) {
     c->add_option(name, values, what)->delimiter(',')->allow_extra_args(false)->check(valid)->capture_default_str()->group("Sweep");
   };

@@ -39,7 +39,7 @@ void TruthBenchmark::addTo(CLI::App& app, int& status) {
   command->add_flag("--json", json, "one JSON object instead of a table");
   command->add_flag("--quiet", quiet, "no progress bar");
   options.addTo(*command);
-  removeEstimatorOptions(*command);
+  removeEstimatorOptions(*command, options);
   truth.addTo(*command);
   command->callback([this, &status] { status = guarded([this] { return run(); }); });
 }

@@ -26,10 +26,14 @@ void TruthOptions::addTo(CLI::App& app) {
   app.add_flag("--no-cache", noCache, "trace it, and keep nothing")->group(group);
 }
 
-void removeEstimatorOptions(CLI::App& app, const std::vector<std::string>& kept) {
-  for (const CLI::Option* o : app.get_options([](const CLI::Option* o) { return o->get_group() == "Ambient transfer"; }))
+void removeEstimatorOptions(CLI::App& app, FrameOptions& options, const std::vector<std::string>& kept) {
+  options.displacement = false;
+  const auto concerned = [](const CLI::Option* o) {
+    return o->get_group() == "Ambient transfer" || o->get_group() == "Environment" || o->get_group().rfind("Display", 0) == 0;
+  };
+  for (const CLI::Option* o : app.get_options(concerned))
     if (std::find(kept.begin(), kept.end(), o->get_name()) == kept.end()) app.remove_option(app.get_option(o->get_name()));
-  for (const char* name : {"--supersample", "--border", "--background", "--ambient-light", "--separation", "--reference"})
+  for (const char* name : {"--supersample", "--border", "--background", "--ambient-light", "--separation", "--displacement", "--reference"})
     app.remove_option(app.get_option(name));
 }
 

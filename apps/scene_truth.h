@@ -23,8 +23,8 @@ struct TruthOptions {
 };
 
 // Takes away the options of a frame that say how the ambient transfer is estimated, but for `kept`, and those that say what
-// is done with it: a truth depends on none of them.
-void removeEstimatorOptions(CLI::App& app, const std::vector<std::string>& kept = {"--radius", "--membership"});
+// is done with it: a truth depends on none of them. Rays meet the triangles of a mesh, so nothing is displaced.
+void removeEstimatorOptions(CLI::App& app, FrameOptions& options, const std::vector<std::string>& kept = {"--radius", "--membership"});
 
 struct SceneTruth {
   Truth truth;

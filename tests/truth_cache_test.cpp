@@ -150,3 +150,20 @@ TEST_CASE("truth: nonsense ends with exit code 2, a scene that is not there with
   CHECK(code({"--rays", "8", "--no-cache", "-o", "/nonexistent/x.npy"}) == 4);
   CHECK(runProgram({"truth", "/nonexistent.glb"}).code == 3);
 }
+
+TEST_CASE("truth: a surface that a height map would displace is flat, in the frame as for the rays") {
+  const TemporaryFolder folder;
+  const auto planesOf = [&](bool displaced) {
+    GltfBuilder b;
+    b.addTexture(pngOf({0xFF000000, 0xFFFFFFFF, 0xFFFFFFFF, 0xFF000000}, 2, 2));
+    const int uv = b.addFloats({0, 0, 4, 0, 0, 4}, "VEC2");
+    Json material = Json::object();
+    if (displaced) material["extras"] = {{"obscura_height", {{"index", 0}, {"scale", 0.3}}}};
+    b.addTriangle({{"material", b.add("materials", material)}, {"attributes", {{"TEXCOORD_0", uv}}}});
+    const std::string scene = b.writeGlb(folder);
+    return printed({scene, "--size", "20x20", "--rays", "16", "--no-cache", "--radius", "0.5", "--eye", "0.3,0.2,2", "--target", "0.3,0.3,0"})["planes"];
+  };
+  const Json flat = planesOf(false);
+  CHECK(flat.size() == 6);
+  CHECK(planesOf(true) == flat);
+}
