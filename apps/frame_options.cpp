@@ -126,8 +126,8 @@ void addAmbientLight(CLI::App& app, FrameOptions& o) {
   };
   app.add_option_function<std::vector<std::string>>(
          "--ambient-light", read,
-         "R,G,B|#RRGGBB: the light that comes from everywhere, linear or sRGB [1,1,1; 0,0,0 where it is extended and things "
-         "emit]. extended: and what the scene's surfaces send each other, by the direction of normals. Both may be given")
+         "R,G,B|#RRGGBB: the light that comes from everywhere, linear or sRGB [1,1,1; extended: what the scene emits; where "
+         "nothing does, as much that it is 1 on average]. extended: and what the scene's surfaces send each other, by the direction of normals. Both may be given")
       ->type_name("COLOR|constant|extended")
       ->allow_extra_args(false)
       ->group("View");
@@ -360,8 +360,7 @@ engine::Result<ResolvedFrame> FrameOptions::resolve(const engine::Scene& in) con
   out.frame.ambientDirections = ambientDirections;
   if (ambientExtended) {
     raster::Parallel parallel(raster.threads);
-    const glm::vec3 light = ambientLight.value_or(glm::vec3(engine::emitsLight(in) ? 0 : 1));
-    const auto colors = engine::extendedAmbient(in, light, parallel);
+    const auto colors = engine::extendedAmbient(in, ambientLight ? std::optional<glm::dvec3>(*ambientLight) : std::nullopt, parallel);
     if (!colors) return colors.error();
     out.frame.ambientLight = glm::vec3(1);
     out.frame.ambientDirections = *colors;

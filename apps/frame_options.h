@@ -42,7 +42,7 @@ struct FrameOptions {
   int scene = -1;  // of the file; -1: its default
   engine::CameraRequest camera;
   glm::vec3 background{0};                // linear
-  std::optional<glm::vec3> ambientLight;  // alike; empty: 1, or 0 where the extended term has emitters
+  std::optional<glm::vec3> ambientLight;  // alike; empty: 1, or what engine::extendedAmbient() chooses
   bool ambientExtended = false;           // see engine::extendedAmbient
   std::optional<std::array<glm::vec3, 6>> ambientDirections;   // as in engine::FrameSettings
   std::vector<std::pair<std::string, glm::vec3>> ambientNodes;  // as in engine::LoadOptions

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "obscura/engine/ambient_light.h"
 #include "obscura/raster/srgb.h"
 
 namespace obscura::engine {
@@ -109,12 +110,6 @@ class InstanceTriangles {
 
 }  // namespace
 
-std::array<glm::dvec3, 6> cubeDirections() {
-  std::array<glm::dvec3, 6> all;
-  for (size_t k = 0; k < 6; ++k) all[k] = glm::dvec3(0), all[k][int(k / 2)] = k % 2 ? -1 : 1;
-  return all;
-}
-
 std::vector<AmbientClass> ambientClasses(const Scene& scene, const std::vector<glm::dvec3>& directions, raster::Parallel& parallel) {
   const size_t classes = directions.size();
   std::vector<AmbientClass> all(classes);
@@ -178,22 +173,20 @@ std::vector<glm::vec3> incomingLight(const std::vector<AmbientClass>& classes, c
   return incoming;
 }
 
-Result<std::array<glm::vec3, 6>> extendedAmbient(const Scene& scene, const glm::dvec3& light, raster::Parallel& parallel) {
+Result<std::array<glm::vec3, 6>> extendedAmbient(const Scene& scene, const std::optional<glm::dvec3>& light, raster::Parallel& parallel) {
   const std::array<glm::dvec3, 6> cube = cubeDirections();
-  const std::vector<glm::vec3> in = incomingLight(ambientClasses(scene, {cube.begin(), cube.end()}, parallel), light);
+  const std::vector<AmbientClass> classes = ambientClasses(scene, {cube.begin(), cube.end()}, parallel);
+  const bool dark = std::none_of(classes.begin(), classes.end(), [](const AmbientClass& k) { return k.emitted.x + k.emitted.y + k.emitted.z > 0; });
+  const std::vector<glm::vec3> in = incomingLight(classes, light.value_or(glm::dvec3(dark ? 1 : 0)));
+  float mean = 0;
+  for (const glm::vec3& k : in) mean += (k.x + k.y + k.z) / 18;
   std::array<glm::vec3, 6> colors;
-  for (size_t k = 0; k < 6; ++k)
-    for (int c = 0; c < 3; ++c) {
-      if (!(in[k][c] < 1e30f)) return Error{ErrorCode::BadInput, "the scene emits more light than floats hold", "", ""};
-      colors[k][c] = std::max(in[k][c], 0.0f);
-    }
+  for (size_t k = 0; k < 6; ++k) {
+    colors[k] = dark && !light ? in[k] / mean : in[k];
+    for (int c = 0; c < 3; ++c)
+      if (!(colors[k][c] >= 0 && colors[k][c] < 1e30f)) return Error{ErrorCode::BadInput, "the scene emits more light than floats hold", "", ""};
+  }
   return colors;
-}
-
-bool emitsLight(const Scene& scene) {
-  return std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& i) {
-    return raster::emits(scene.materials[scene.meshes[i.mesh].material]);
-  });
 }
 
 }  // namespace obscura::engine

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -22,9 +23,6 @@ struct AmbientClass {
   glm::dvec3 emitted{0};          // U_k   = sum mu_ik A_i E_i, the unshot power
 };
 
-// The faces of a cube, in the order of FrameSettings::ambientDirections: +x, -x, +y, -y, +z, -z.
-std::array<glm::dvec3, 6> cubeDirections();
-
 // A triangle's reflectance is its base colour, with the mean of the texture instead of what the triangle shows of it, and
 // with the mean of its vertex colours; what is unlit reflects nothing and emits that. Double-sided triangles are two.
 // Triangles without area count nothing, nor do those that face away from all directions; implicit surfaces have no
@@ -37,11 +35,10 @@ std::vector<AmbientClass> ambientClasses(const Scene& scene, const std::vector<g
 // closed room whose walls absorb nothing light would have no end. In_k of one class alone is `light`.
 std::vector<glm::vec3> incomingLight(const std::vector<AmbientClass>& classes, const glm::dvec3& light);
 
-// Both, for the six faces of a cube: FrameSettings::ambientDirections, to be used with an ambient light of 1. BadInput: a
-// light beyond what floats hold.
-Result<std::array<glm::vec3, 6>> extendedAmbient(const Scene& scene, const glm::dvec3& light, raster::Parallel& parallel);
-
-// Some surface sends out light of its own.
-bool emitsLight(const Scene& scene);
+// Both, for the six faces of a cube: FrameSettings::ambientDirections, to be used with an ambient light of 1. Without a light
+// there is that of the scene's emitters alone; where nothing emits, white light from everywhere, such that its mean over
+// classes and channels is 1 with all reflections: as bright as the constant term, as in an open scene reflections would
+// only add to a light that is not there. BadInput: a light beyond what floats hold.
+Result<std::array<glm::vec3, 6>> extendedAmbient(const Scene& scene, const std::optional<glm::dvec3>& light, raster::Parallel& parallel);
 
 }  // namespace obscura::engine

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "obscura/engine/ambient_light.h"
 #include "obscura/engine/extended_ambient.h"
 #include "frame_checks.h"
 
@@ -188,6 +189,22 @@ TEST_CASE("extended ambient: classes without area, white rooms and nothing at al
   const auto blinding = engine::extendedAmbient(white.scene, glm::dvec3(1), parallel);
   REQUIRE_FALSE(blinding.ok());
   CHECK(blinding.error().code == engine::ErrorCode::BadInput);
+}
+
+TEST_CASE("extended ambient: without a light it is that of the emitters, or as bright as the constant term where nothing emits") {
+  raster::Parallel parallel;
+  Builder b = room({0.8f, 0.1f, 0.1f}, {0.1f, 0.8f, 0.1f}, glm::vec3(0.5f));
+  const auto dark = engine::extendedAmbient(b.scene, std::nullopt, parallel);
+  REQUIRE(dark.ok());
+  float mean = 0;
+  for (const glm::vec3& in : *dark) mean += (in.x + in.y + in.z) / 18;
+  CHECK(mean == Approx(1));
+  CHECK((*dark)[1].x > 1.03f * (*dark)[0].x);  // towards the red wall
+  b.scene.materials[3].emissive = glm::vec3(2);
+  const auto lit = engine::extendedAmbient(b.scene, std::nullopt, parallel), alone = engine::extendedAmbient(b.scene, glm::dvec3(0), parallel);
+  REQUIRE((lit.ok() && alone.ok()));
+  CHECK(*lit == *alone);
+  CHECK((*lit)[2].x > 0.1f);
 }
 
 TEST_CASE("extended ambient: the number of threads changes no bit") {
