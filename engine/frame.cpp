@@ -153,7 +153,7 @@ post::TransferStatistics Renderer::State::transferSums(post::TransferInput& in, 
     in.bounds = &bounds;
   }
   if (question) {
-    asked.resize((w + 15) / 16, h);
+    asked.resize(post::segmentsOf(w), h);
     in.asked = &asked;
   }
   std::vector<post::TransferStatistics> found(size_t(parallel.workers()));

@@ -44,10 +44,6 @@ HWY_INLINE void turnFrame(Pixels& at, VF c, VF s) {
           hn::Sub(hn::Mul(s, t.z), hn::Mul(c, b.z))};
 }
 
-// Rows are worked on in segments of 16 pixels, so that what is skipped does not depend on the vector's length.
-constexpr int kSegment = 16;
-static_assert(DepthBounds::kCellWidth == kSegment, "a segment lies in one block");
-
 // kReads: what the occluders send back is subtracted from the denominators. kMore: there is more than the depth map.
 template <class Points, bool kPerspective, bool kOneStep, bool kReads, bool kMore>
 class Kernel {
@@ -299,7 +295,7 @@ TransferSums makeTransferSums(const TransferInput& in, TransferSums used) {
     throw std::invalid_argument("two layers of depth are asked for, but the G-buffer has no depth2");
   const bool denominators = in.settings.albedo != TransferAlbedo::Own;
   used.numerator.resize(in.g->width, in.g->height);
-  used.open.resize((in.g->width + 15) / 16, in.g->height);
+  used.open.resize(segmentsOf(in.g->width), in.g->height);
   for (auto& plane : used.denominator) plane.resize(denominators ? in.g->width : 0, denominators ? in.g->height : 0);
   return used;
 }

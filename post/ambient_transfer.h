@@ -18,13 +18,18 @@
 
 namespace obscura::post {
 
+// So many pixels of a row are known to be open, or asked for, together: what is skipped does not depend on the vector's length.
+constexpr int kSegment = 16;
+static_assert(DepthBounds::kCellWidth == kSegment, "a segment lies in one block");
+constexpr int segmentsOf(int width) { return (width + kSegment - 1) / kSegment; }
+
 // What the shader returns as (w.a, w.rgb). For TransferAlbedo::Own the denominator follows from the numerator and is
 // not stored.
 struct TransferSums {
   raster::Plane<float> numerator;       // test rays that stay outside: 0 ... n, a whole number; n where empty
   // Per channel n minus the occluders' albedos; TransferAlbedo::Radiance: 0 minus their radiances.
   raster::Plane<float> denominator[3];
-  raster::Plane<uint8_t> open;          // one element per 16 pixels of a row: 1 where all numerators are n
+  raster::Plane<uint8_t> open;          // one element per segment: 1 where all numerators are n
 };
 
 // Every pixel is one of these. Which, depends neither on the instruction set nor on how the rows are divided.

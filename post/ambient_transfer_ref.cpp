@@ -108,7 +108,7 @@ void ambientTransferRef(const TransferInput& in, int y0, int y1, TransferSums& o
     for (int x = 0; x < in.g->width; ++x) {
       shade(in, x, y, out);
       const uint8_t open = out.numerator.at(x, y) == float(in.settings.samples);
-      out.open.at(x / 16, y) = x % 16 == 0 ? open : out.open.at(x / 16, y) & open;
+      out.open.at(x / kSegment, y) = x % kSegment == 0 ? open : out.open.at(x / kSegment, y) & open;
     }
 }
 

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <limits>
 
+#include "obscura/post/ambient_transfer.h"
+
 namespace obscura::post {
 namespace {
 
-constexpr int kSegment = 16;
 // The filter's window of pixel p is p - 2 ... p + 1 on both axes (depth_filter.h), so that q lies in those of q - 1 ... q + 2.
 constexpr int kBefore = 1, kAfter = 2;
 

@@ -99,7 +99,7 @@ void filterRow(const TransferInput& in, const TransferSums& sums, int y, Transfe
   }
   bool open = false;
   for (int x = 0; x < g.width; x += int(hn::Lanes(d))) {
-    if (x % 16 == 0) open = window.isOpen(x / 16, sums.open.width(), in.settings.filter);
+    if (x % kSegment == 0) open = window.isOpen(x / kSegment, sums.open.width(), in.settings.filter);
     const MF seen = hn::Lt(hn::LoadU(d, window.depth[2] + x), infinity);
     if (open || hn::AllFalse(d, seen)) {
       if (obscurance) hn::StoreU(one, d, obscurance + x);

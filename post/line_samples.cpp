@@ -59,7 +59,7 @@ class LineKernel {
     const VF infinity = hn::Set(d, std::numeric_limits<float>::infinity());
     const MF inside = hn::RebindMask(d, hn::Lt(hn::Iota(DI(), x), hn::Set(DI(), g_.width)));
     const VF z = hn::LoadU(d, g_.depth.row(y) + x);
-    const bool asked = !in_.asked || in_.asked->at(x / 16, y);
+    const bool asked = !in_.asked || in_.asked->at(x / kSegment, y);
     const MF seen = hn::And(hn::Lt(asked ? z : infinity, infinity), inside);
     const uint64_t seenCount = hn::CountTrue(d, seen);
     statistics_.sampled += seenCount;
@@ -76,8 +76,8 @@ class LineKernel {
     const VF numerator = rest(all, s.inner), start = in_.settings.albedo == TransferAlbedo::Radiance ? hn::Zero(d) : all;
     hn::StoreU(numerator, d, out_.numerator.row(y) + x);
     for (int c = 0; kReads && c < 3; ++c) hn::StoreU(rest(start, s.read[c]), d, out_.denominator[c].row(y) + x);
-    uint8_t& open = out_.open.at(x / 16, y);
-    const uint8_t before = x % 16 == 0 ? 1 : open;
+    uint8_t& open = out_.open.at(x / kSegment, y);
+    const uint8_t before = x % kSegment == 0 ? 1 : open;
     open = before & uint8_t(hn::AllTrue(d, hn::Or(hn::Eq(numerator, all), hn::Not(inside))));
   }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "obscura/engine/image_file.h"
+#include "cli_failure.h"
 #include "run_program.h"
 
 using namespace obscura;
@@ -29,13 +30,7 @@ struct Workplace {
   }
   void failing(int code, const Words& words, const std::string& says) const {
     const size_t before = folder.files();
-    const Finished f = run(words);
-    INFO(f.err);
-    CHECK(f.code == code);
-    CHECK(f.out.empty());
-    CHECK(f.err.rfind("obscura: error: ", 0) == 0);
-    CHECK(std::count(f.err.begin(), f.err.end(), '\n') == 1);
-    CHECK(f.err.find(says) != std::string::npos);
+    tests::checkFailure(run(words), code, says);
     CHECK(folder.files() == before);
   }
 };

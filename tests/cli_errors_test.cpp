@@ -10,6 +10,7 @@
 #include <chrono>
 
 #include "obscura/raster/target.h"
+#include "cli_failure.h"
 #include "cli_scene.h"
 #include "run_program.h"
 
@@ -28,12 +29,7 @@ struct Workplace : tests::SceneFolder {
     words.insert(words.end(), options.begin(), options.end());
     const size_t before = folder.files();
     const Finished f = runProgram(words);
-    INFO(f.err);
-    CHECK(f.code == code);
-    CHECK(f.out.empty());
-    CHECK(f.err.rfind("obscura: error: ", 0) == 0);
-    CHECK(std::count(f.err.begin(), f.err.end(), '\n') == 1);
-    CHECK(f.err.find(says) != std::string::npos);
+    tests::checkFailure(f, code, says);
     CHECK(folder.files() == before);
     return f;
   }

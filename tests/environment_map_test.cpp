@@ -7,12 +7,14 @@
 
 #include <glm/geometric.hpp>
 
+#include "environment_maps.h"
 #include "fnv1a.h"
 #include "obscura/engine/environment_map.h"
 #include "obscura/engine/image_file.h"
 #include "temporary_folder.h"
 
 using namespace obscura;
+using namespace obscura::tests;
 using engine::EnvironmentMap;
 using engine::EnvironmentProjector;
 using Projection = engine::EnvironmentProjection;
@@ -21,8 +23,6 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr Projection kAll[] = {Projection::Latlong, Projection::Sphere, Projection::Cube, Projection::Paraboloid};
-
-EnvironmentProjector projector(Projection p, int side) { return {p, p == Projection::Latlong ? 2 * side : side, side}; }
 
 struct Random {
   std::mt19937 bits{17};
@@ -38,18 +38,6 @@ glm::dvec3 sky(const glm::dvec3& d) {
   return {1 + 0.5 * d.x + 0.3 * d.y * d.z, 2 + d.y - 0.4 * d.x * d.z, 1.5 - 0.7 * d.z + 0.5 * d.x * d.y};
 }
 
-template <class F>
-EnvironmentMap filled(const EnvironmentProjector& p, const F& radiance) {
-  EnvironmentMap map(p);
-  for (int panel = 0; panel < p.panels(); ++panel)
-    for (int y = 0; y < p.height; ++y)
-      for (int x = 0; x < p.width; ++x)
-        if (p.shows(x, y)) map.at(panel, x, y) = glm::vec3(radiance(p.directionAt({panel, x + 0.5, y + 0.5})));
-  raster::Parallel parallel(2);
-  map.fillBorders(parallel);
-  return map;
-}
-
 double difference(const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a - b); }
 
 }  // namespace
@@ -57,7 +45,7 @@ double difference(const glm::dvec3& a, const glm::dvec3& b) { return glm::length
 TEST_CASE("environment: every direction has a point in every projection, and the point has that direction") {
   Random random;
   for (Projection projection : kAll) {
-    const EnvironmentProjector p = projector(projection, 64);
+    const EnvironmentProjector p = environmentProjector(projection, 64);
     double worst = 0;
     for (int k = 0; k < 20000; ++k) {
       const glm::dvec3 d = random.direction();
@@ -75,7 +63,7 @@ TEST_CASE("environment: every direction has a point in every projection, and the
 }
 
 TEST_CASE("environment: -z is in the middle, +x to the right of it and +y above, but for the mirror ball that shows +z in the middle") {
-  const auto at = [](Projection projection, const glm::dvec3& d) { return projector(projection, 16).pointOf(d); };
+  const auto at = [](Projection projection, const glm::dvec3& d) { return environmentProjector(projection, 16).pointOf(d); };
   const auto lies = [](const engine::PanelPoint& p, int panel, double x, double y) {
     CAPTURE(p.panel, p.x, p.y);
     CHECK((p.panel == panel && std::fabs(p.x - x) < 1e-12 && std::fabs(p.y - y) < 1e-12));
@@ -98,7 +86,7 @@ TEST_CASE("environment: -z is in the middle, +x to the right of it and +y above,
 TEST_CASE("environment: solid angles of texels are the share of directions that fall into them, and add up to the sphere") {
   Random random;
   for (Projection projection : kAll) {
-    const EnvironmentProjector p = projector(projection, 8);
+    const EnvironmentProjector p = environmentProjector(projection, 8);
     std::vector<int> hits(size_t(p.panels() * p.width * p.height));
     constexpr int kDirections = 200000;
     for (int k = 0; k < kDirections; ++k) {
@@ -114,7 +102,7 @@ TEST_CASE("environment: solid angles of texels are the share of directions that 
     CHECK(wrong == 0);
     const bool exact = projection == Projection::Latlong || projection == Projection::Cube;
     for (const auto& [side, error] : {std::pair{16, 1e-3}, {256, 1e-5}}) {
-      const EnvironmentProjector q = projector(projection, side);
+      const EnvironmentProjector q = environmentProjector(projection, side);
       double sum = 0;
       for (int y = 0; y < q.height; ++y)
         for (int x = 0; x < q.width; ++x) sum += q.panels() * q.solidAngle(x, y);
@@ -129,7 +117,7 @@ TEST_CASE("environment: look-ups have no seams: not where longitudes wrap, nor a
   for (Projection projection : kAll) {
     const auto noise = [&](const glm::dvec3&) { return glm::dvec3(random.in(0, 1), random.in(0, 1), random.in(0, 1)); };
     const bool paraboloid = projection == Projection::Paraboloid;  // continuous as far as it interpolates well
-    const EnvironmentMap map = paraboloid ? filled(projector(projection, 128), sky) : filled(projector(projection, 16), noise);
+    const EnvironmentMap map = paraboloid ? filledEnvironment(environmentProjector(projection, 128), sky) : filledEnvironment(environmentProjector(projection, 16), noise);
     double worst = 0;
     for (int k = 0; k < 4000; ++k) {
       glm::dvec3 d = random.direction();
@@ -154,8 +142,8 @@ TEST_CASE("environment: a white map is white in every projection and direction")
   Random random;
   for (Projection from : kAll)
     for (Projection to : kAll) {
-      const EnvironmentMap white = filled(projector(from, 9), [](const glm::dvec3&) { return glm::dvec3(1, 1, 1); });
-      const EnvironmentMap map = convertEnvironment(white, projector(to, 7), parallel);
+      const EnvironmentMap white = filledEnvironment(environmentProjector(from, 9), [](const glm::dvec3&) { return glm::dvec3(1, 1, 1); });
+      const EnvironmentMap map = convertEnvironment(white, environmentProjector(to, 7), parallel);
       for (int k = 0; k < 500; ++k) REQUIRE(difference(map.lookUp(random.direction()), glm::dvec3(1)) < 1e-6);
     }
 }
@@ -163,7 +151,7 @@ TEST_CASE("environment: a white map is white in every projection and direction")
 TEST_CASE("environment: a smooth sky survives every conversion, one after the other, and a round trip says how well") {
   raster::Parallel parallel(2);
   Random random;
-  EnvironmentMap map = filled(projector(Projection::Latlong, 64), sky);
+  EnvironmentMap map = filledEnvironment(environmentProjector(Projection::Latlong, 64), sky);
   const EnvironmentMap first = map;
   for (Projection to : {Projection::Cube, Projection::Sphere, Projection::Paraboloid, Projection::Cube, Projection::Latlong}) {
     const EnvironmentProjector p = engine::projectorOfTexels(to, engine::usedTexels(first.projector()));
@@ -187,18 +175,18 @@ TEST_CASE("environment: a smooth sky survives every conversion, one after the ot
 TEST_CASE("environment: a smaller map is a mean of the larger one: a checkerboard becomes grey") {
   raster::Parallel parallel(2);
   int k = 0;
-  const EnvironmentMap board = filled(projector(Projection::Latlong, 64), [&](const glm::dvec3&) { ++k; return glm::dvec3((k / 128 + k) % 2); });
-  const EnvironmentMap small = convertEnvironment(board, projector(Projection::Latlong, 8), parallel);
+  const EnvironmentMap board = filledEnvironment(environmentProjector(Projection::Latlong, 64), [&](const glm::dvec3&) { ++k; return glm::dvec3((k / 128 + k) % 2); });
+  const EnvironmentMap small = convertEnvironment(board, environmentProjector(Projection::Latlong, 8), parallel);
   for (int x = 0; x < 16; ++x) CHECK(small.at(0, x, 4).x == Approx(0.5).margin(0.02));
 }
 
 TEST_CASE("environment: conversions have the same bits with any number of threads and on every machine") {
-  const EnvironmentMap map = filled(projector(Projection::Latlong, 20), sky);
+  const EnvironmentMap map = filledEnvironment(environmentProjector(Projection::Latlong, 20), sky);
   for (int threads : {1, 2, 8}) {
     raster::Parallel parallel(threads);
     uint64_t h = tests::kFnvStart;
     for (Projection to : kAll) {
-      const engine::Image image = imageOfEnvironment(convertEnvironment(map, projector(to, 15), parallel));
+      const engine::Image image = imageOfEnvironment(convertEnvironment(map, environmentProjector(to, 15), parallel));
       h = tests::fnv1a(image.bytes.data(), image.bytes.size(), h);
     }
     CHECK(h == 0x40783a3a392c3904ull);
@@ -246,7 +234,7 @@ TEST_CASE("environment: only images of a map's shape are maps, and a map fills i
   for (Projection p : kAll)
     for (const auto& [w, h] : {std::pair{0, 0}, {7, 4}, {9, 6}, {8, 7}, {3, 2}, {-8, -4}, {2, 3}})
       CHECK_FALSE(engine::projectorOfImage(p, w, h));
-  const engine::Image cross = imageOfEnvironment(filled(projector(Projection::Cube, 4), sky));
+  const engine::Image cross = imageOfEnvironment(filledEnvironment(environmentProjector(Projection::Cube, 4), sky));
   CHECK((cross.width == 16 && cross.height == 12));
   CHECK(cross.row<float>(0)[0] == 0);
   const glm::dvec3 up = sky(glm::normalize(glm::dvec3(-0.75, 1, 0.75)));

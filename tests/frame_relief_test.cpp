@@ -1,12 +1,8 @@
 // Height maps in whole frames: the scene that obscura-scene writes.
-#include <fstream>
-
 #include "obscura/apps/demo_surfaces.h"
-#include "obscura/apps/glb_writer.h"
 #include "obscura/engine/camera_choice.h"
-#include "obscura/engine/gltf.h"
 #include "obscura/raster/parallel.h"
-#include "obscura/tests/temporary_folder.h"
+#include "obscura/tests/scene_of_glb.h"
 #include "frame_checks.h"
 
 using namespace obscura;
@@ -15,14 +11,7 @@ using namespace obscura::tests;
 namespace {
 
 const engine::Scene& relief() {
-  static const engine::Scene scene = [] {
-    const TemporaryFolder folder;
-    const std::vector<uint8_t> glb = apps::glbFromScene(apps::makeReliefScene());
-    std::ofstream(folder / "relief.glb", std::ios::binary).write(reinterpret_cast<const char*>(glb.data()), std::streamsize(glb.size()));
-    auto loaded = engine::sceneFromGltf(folder / "relief.glb");
-    REQUIRE(loaded.ok());
-    return std::move(*loaded);
-  }();
+  static const engine::Scene scene = sceneOfGlb(apps::makeReliefScene());
   return scene;
 }
 

@@ -19,7 +19,7 @@
 #include "obscura/engine/gltf.h"
 #include "obscura/engine/image_file.h"
 #include "obscura/raster/parallel.h"
-#include "obscura/tests/temporary_folder.h"
+#include "obscura/tests/scene_of_glb.h"
 
 using namespace obscura;
 
@@ -33,18 +33,8 @@ const std::vector<engine::Aov> kAovs = {engine::Aov::Color,    engine::Aov::Dept
 
 bool blessing() { return std::getenv("OBSCURA_BLESS") != nullptr; }
 
-// As a file gives it.
-engine::Scene loaded(const apps::GlbScene& made) {
-  const TemporaryFolder folder;
-  const std::vector<uint8_t> glb = apps::glbFromScene(made);
-  std::ofstream(folder / "scene.glb", std::ios::binary).write(reinterpret_cast<const char*>(glb.data()), std::streamsize(glb.size()));
-  auto scene = engine::sceneFromGltf(folder / "scene.glb");
-  REQUIRE(scene.ok());
-  return std::move(*scene);
-}
-
 const engine::Scene& demo() {
-  static const engine::Scene scene = loaded(apps::makeDemoScene());
+  static const engine::Scene scene = tests::sceneOfGlb(apps::makeDemoScene());
   return scene;
 }
 
@@ -151,7 +141,7 @@ TEST_CASE("golden: the demo scene in the light of an environment, before it, dis
 }
 
 TEST_CASE("golden: a floor that a height map displaces, by stored radiance and two layers") {
-  const engine::Scene scene = loaded(apps::makeReliefScene());
+  const engine::Scene scene = tests::sceneOfGlb(apps::makeReliefScene());
   engine::FrameSettings s = frameOf(160, 120, scene);
   s.transfer.albedo = post::TransferAlbedo::Radiance;
   s.transfer.layers = 2;
@@ -160,7 +150,7 @@ TEST_CASE("golden: a floor that a height map displaces, by stored radiance and t
 }
 
 TEST_CASE("golden: implicit surfaces on a floor, sampled by dealt points, filtered by planes, lit by what surfaces send each other") {
-  const engine::Scene scene = loaded(apps::makeImplicitScene());
+  const engine::Scene scene = tests::sceneOfGlb(apps::makeImplicitScene());
   engine::FrameSettings s = frameOf(160, 120, scene);
   s.transfer.estimator = post::Estimator::Box;
   s.transfer.filterGuide = post::FilterGuide::Plane;

@@ -10,6 +10,7 @@
 #include "obscura/engine/image_file.h"
 #include "obscura/engine/irradiance.h"
 #include "obscura/raster/camera.h"
+#include "environment_maps.h"
 #include "temporary_folder.h"
 
 using namespace obscura;
@@ -22,15 +23,7 @@ constexpr double kPi = 3.14159265358979323846;
 
 template <class F>
 EnvironmentMap filled(Projection projection, int side, const F& radiance) {
-  const engine::EnvironmentProjector p{projection, projection == Projection::Latlong ? 2 * side : side, side};
-  EnvironmentMap map(p);
-  for (int panel = 0; panel < p.panels(); ++panel)
-    for (int y = 0; y < p.height; ++y)
-      for (int x = 0; x < p.width; ++x)
-        if (p.shows(x, y)) map.at(panel, x, y) = glm::vec3(radiance(p.directionAt({panel, x + 0.5, y + 0.5})));
-  raster::Parallel parallel(2);
-  map.fillBorders(parallel);
-  return map;
+  return tests::filledEnvironment(tests::environmentProjector(projection, side), radiance);
 }
 
 // By the definition: the cosine-weighted sum over all texels.
