@@ -208,8 +208,8 @@ void addView(CLI::App& app, FrameOptions& o) {
       ->type_name("PIXELS")
       ->group("View");
   addChoice(app, "--supersample", {{"1", 1}, {"2", 2}, {"4", 4}}, o.supersample,
-            "antialiasing: sub-pixels a side of a pixel. color, albedo, emissive, obscurance and transfer are their "
-            "means, in linear light; depth, normal, position and ids those of the nearest one")
+            "antialiasing: sub-pixels a side of a pixel. color, albedo, emissive, metallic, roughness, obscurance and transfer are "
+            "their means, in linear light; depth, normal, position and ids those of the nearest one")
       ->group("View");
   app.add_option(
          "--camera", o.camera.name,

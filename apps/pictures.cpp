@@ -98,6 +98,8 @@ Planes planesOf(const Frame& frame, Aov aov) {
     case Aov::Material: add(p, frame.g.material); break;
     case Aov::Depth2: add(p, frame.g.depth2); break;
     case Aov::DepthBack: add(p, frame.g.depthBack); break;
+    case Aov::Metallic: add(p, frame.g.metallic); break;
+    case Aov::Roughness: add(p, frame.g.roughness); break;
   }
   return p;
 }
@@ -161,6 +163,8 @@ Image picture(const Frame& frame, Aov aov, int bits) {
     case Aov::Albedo:
     case Aov::Emissive: return srgbPicture(planeImage(frame, aov), bits);
     case Aov::Obscurance:
+    case Aov::Metallic:
+    case Aov::Roughness:
     case Aov::Transfer: return linear(planeImage(frame, aov), bits);
     case Aov::Normal:
       if (bits == 8) return engine::normalPicture(frame.g.normal[0], frame.g.normal[1], frame.g.normal[2]);

@@ -23,8 +23,8 @@ engine::RowSource displayRows(const engine::Frame& frame);
 // Linear floats sRGB-encoded, U8 or U16; clamped to [0, 1], NaN is 0.
 engine::Image srgbPicture(const engine::Image& linear, int bits);
 
-// What a PNG holds. In 8 bits: color, albedo and emissive sRGB-encoded; obscurance and transfer linear, times 255 (they
-// are factors, not light), obscurance as grey; normal 255 (n / 2 + 1/2); see engine/plane_image.h for depth and ids;
+// What a PNG holds. In 8 bits: color, albedo and emissive sRGB-encoded; obscurance, transfer,
+// metallic and roughness linear, times 255 (they are factors, not light), those of one channel as grey; normal 255 (n / 2 + 1/2); see engine/plane_image.h for depth and ids;
 // position along each axis from 0 at the least to 255 at the greatest that is seen (needs the depth, too). 16 bits:
 // the same with 65535, but depth, position and ids stay pictures of 8 bits.
 engine::Image picture(const engine::Frame& frame, engine::Aov aov, int bits);

@@ -133,7 +133,7 @@ void RenderCommand::addTo(CLI::App& program) {
   c.add_option("--stages", request_.stages, "a PNG that shows depth, normal, albedo, O, W and the result side by side")
       ->type_name("FILE")->group(output);
   c.add_option("--bits", request_.bits,
-               "of PNG channels [8]. color, albedo and emissive are sRGB-encoded; obscurance and transfer linear "
+               "of PNG channels [8]. color, albedo and emissive are sRGB-encoded; obscurance, transfer, metallic and roughness linear "
                "(1 is white); normals n/2 + 1/2; depth, position and ids false colours, always of 8 bits")
       ->check(oneOf({"8", "16"}))->type_name("8|16")->group(output);
   c.add_option("--format", request_.format, "of standard output [png]")

@@ -17,6 +17,8 @@ const std::vector<AovInfo>& allAovs() {
       {Aov::Material, "material", {"id"}, "number of the material in the file"},
       {Aov::Depth2, "depth2", {"Z"}, "depth of what lies behind, at least the separation farther; infinity where nothing does"},
       {Aov::DepthBack, "depthback", {"Z"}, "depth of the nearest back face there, where what is seen ends"},
+      {Aov::Metallic, "metallic", {"Y"}, "how metallic the surface is, 0 to 1"},
+      {Aov::Roughness, "roughness", {"Y"}, "how rough it is, 0 to 1; 0 where empty"},
   };
   return all;
 }

@@ -10,7 +10,7 @@
 namespace obscura::engine {
 
 enum class Aov : uint8_t { Color, Depth, Normal, Albedo, Emissive, Obscurance, Transfer, Position, Triangle, Instance, Material,
-                           Depth2, DepthBack };
+                           Depth2, DepthBack, Metallic, Roughness };
 
 struct AovInfo {
   Aov aov;

@@ -37,6 +37,8 @@ Work workOf(const Frame& full, const FrameSettings& settings, Frame& out) {
       case Aov::Normal: addThree(work.nearest, full.g.normal, out.g.normal); break;
       case Aov::Albedo: addThree(work.means, full.g.albedo, out.g.albedo); break;
       case Aov::Emissive: addThree(work.means, full.g.emissive, out.g.emissive); break;
+      case Aov::Metallic: add(work.means, full.g.metallic, out.g.metallic); break;
+      case Aov::Roughness: add(work.means, full.g.roughness, out.g.roughness); break;
       case Aov::Obscurance: add(work.means, full.transfer.obscurance, out.transfer.obscurance); break;
       case Aov::Transfer: addThree(work.means, full.transfer.w, out.transfer.w); break;
       case Aov::Position: addThree(work.nearest, full.g.position, out.g.position); break;

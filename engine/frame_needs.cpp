@@ -56,6 +56,8 @@ FrameNeeds needsOf(const Scene& scene, const FrameSettings& s) {
   n.planes.material = wants(Aov::Material);
   n.planes.depth2 = wants(Aov::Depth2) || (n.sums && s.transfer.layers == 2);
   n.planes.depthBack = wants(Aov::DepthBack);
+  n.planes.metallic = wants(Aov::Metallic);
+  n.planes.roughness = wants(Aov::Roughness);
   n.planes.separation = s.separation;
   return n;
 }

@@ -13,6 +13,8 @@ GBuffer::GBuffer(int w, int h, const PlaneSet& planes) : width(w), height(h) {
     make(planes.emissive, emissive[c]);
     make(planes.position, position[c]);
   }
+  make(planes.metallic, metallic);
+  make(planes.roughness, roughness);
   make(planes.triangle, triangle);
   make(planes.instance, instance);
   make(planes.material, material);
@@ -25,6 +27,7 @@ GBuffer::GBuffer(int w, int h, const PlaneSet& planes) : width(w), height(h) {
 bool GBuffer::has(const PlaneSet& planes) const {
   return planes.depth != depth.empty() && planes.normal != normal[0].empty() && planes.albedo != albedo[0].empty() &&
          planes.emissive != emissive[0].empty() && planes.position != position[0].empty() &&
+         planes.metallic != metallic.empty() && planes.roughness != roughness.empty() &&
          planes.triangle != triangle.empty() && planes.instance != instance.empty() &&
          planes.material != material.empty() && planes.depth2 != depth2.empty() && planes.depthBack != depthBack.empty() &&
          planes.relief != heightMap.empty();
@@ -40,6 +43,8 @@ void cutOut(const GBuffer& from, const Window& part, GBuffer& to) {
     cutOut(from.emissive[c], part, to.emissive[c]);
     cutOut(from.position[c], part, to.position[c]);
   }
+  cutOut(from.metallic, part, to.metallic);
+  cutOut(from.roughness, part, to.roughness);
   cutOut(from.triangle, part, to.triangle);
   cutOut(from.instance, part, to.instance);
   cutOut(from.material, part, to.material);

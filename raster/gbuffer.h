@@ -17,14 +17,16 @@ struct PlaneSet {
   bool depth2 = false, depthBack = false;
   float separation = 0;  // of depth2: scene units, positive and finite; not read without it
   bool relief = false;   // for the transfer of displaced surfaces; not without `normal`
+  bool metallic = false, roughness = false;
 
   // Nothing but depths: ids, normals and materials are not even kept per pixel, alpha is tested all the same.
   bool depthsAlone() const {
-    return !(normal || albedo || emissive || position || triangle || instance || material || relief);
+    return !(normal || albedo || emissive || position || triangle || instance || material || relief || metallic || roughness);
   }
 };
 
-// Empty pixels hold: depths infinity; normal, albedo, emissive and position 0; ids kNoTriangle.
+// Empty pixels hold: depths infinity; normal, albedo, emissive, position, metallic and roughness 0;
+// ids kNoTriangle.
 //
 // Behind the first layer, which is what `depth` shows, there can be two more. Both are the largest depth key (view.h) up
 // to a limit that follows from the first layer's key, so they depend on no order, either:
@@ -43,6 +45,8 @@ struct GBuffer {
   Plane<float> albedo[3];    // linear, [0, 1]: base colour factor x texture x vertex colour; 0 where unlit
   Plane<float> emissive[3];  // linear, >= 0; the base colour where unlit
   Plane<float> position[3];  // camera space, scene units
+  Plane<float> metallic;     // linear, [0, 1]: metallic factor x texture B; 0 where unlit
+  Plane<float> roughness;    // linear, [0, 1]: roughness factor x texture G, perceptual as in glTF; 1 where unlit
   Plane<uint32_t> triangle;  // id, see DrawList
   Plane<uint32_t> instance;  // index into DrawList::instances, and beyond them into DrawList::implicits
   Plane<uint32_t> material;  // index into DrawList::materials

@@ -38,6 +38,7 @@ struct ImplicitDraw {
   double perPeriod = 1, perSlope = 1; // Gyroid: 1 / period, and what makes it no steeper than 1
   ViewSphere sphere;                  // around the bound, with room for every rounding
   glm::vec3 albedo, emissive;         // as the planes show them
+  float metallic = 0, roughness = 0;  // alike
   bool doubleSided = false;
   uint32_t id = 0, instance = 0, materialIndex = 0;
 };

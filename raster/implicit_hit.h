@@ -40,6 +40,8 @@ inline void storeHit(const View& view, const ImplicitDraw& s, const TileBuffers&
   store3(hit.normal, x, y, out.normal);
   store3(s.albedo, x, y, out.albedo);
   store3(s.emissive, x, y, out.emissive);
+  if (!out.metallic.empty()) out.metallic.at(x, y) = s.metallic;
+  if (!out.roughness.empty()) out.roughness.at(x, y) = s.roughness;
   storeId(s.id, x, y, out.triangle);
   storeId(s.instance, x, y, out.instance);
   storeId(s.materialIndex, x, y, out.material);

@@ -26,7 +26,10 @@ void resolvePixel(const SurfaceContext& context, uint32_t id, float key, int x, 
 // What resolve stores of a surface, not yet cut to its range.
 struct Shaded {
   glm::vec3 normal, base, emitted;
+  float metallic, roughness;
 };
+// Of a lit material, by what its texture says.
+glm::vec2 metallicRoughness(const SurfaceContext& context, const SurfacePoint& p);
 void resolveShaded(const SurfaceContext& context, uint32_t id, float key, const Shaded& shaded, int x, int y, GBuffer& out);
 // What relief.h does.
 void sinkInto(const SurfaceContext& context, const Visibility& displaced, Visibility& seen);

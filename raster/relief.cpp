@@ -227,6 +227,12 @@ class Relief {
       const auto times = [&](float factor, VF v) HWY_ATTR { return hn::Mul(hn::Set(d, factor), v); };
       store3(p, emissionOf(times(m.emissive.r, e.r), times(m.emissive.g, e.g), times(m.emissive.b, e.b)), out.emissive);
     }
+    if (variesInGloss(draw_, wanted)) {
+      const Rgba texel = sampleSlot(context_, draw_, s, m.metallicRoughnessMap);
+      const Gloss gloss = glossOf(m, texel.g, texel.b);
+      store(p, gloss.metallic, out.metallic);
+      store(p, gloss.roughness, out.roughness);
+    }
   }
 
   // Those of the triangle, as resolve stored them.

@@ -98,7 +98,8 @@ void displacePixel(const SurfaceContext& context, uint32_t id, float key, int x,
     smooth = glm::vec3(out.normal[0].at(x, y), out.normal[1].at(x, y), out.normal[2].at(x, y));
     normal = tilted(*s, context.heights[size_t(m.heightMap.texture)], smooth);
   }
-  resolveShaded(context, id, key, {normal, base, emitted}, x, y, out);
+  const glm::vec2 gloss = metallicRoughness(context, s->point);
+  resolveShaded(context, id, key, {normal, base, emitted, gloss.x, gloss.y}, x, y, out);
   if (out.heightMap.empty()) return;
   out.heightMap.at(x, y) = uint32_t(m.heightMap.texture);
   const glm::vec3 rows[4] = {s->uvh, s->gradient[0], s->gradient[1], smooth * (1 / s->frame.depth)};

@@ -62,7 +62,7 @@ HWY_INLINE void storeVisibility(const View& view, const TileBuffers& tile, GBuff
 // Four rows of the cell: a block after the other for each plane, as in the tile's memory.
 struct Strip {
   static constexpr int kPixels = kCell * kBlock;
-  HWY_ALIGN float normal[3][kPixels], albedo[3][kPixels], emissive[3][kPixels];
+  HWY_ALIGN float normal[3][kPixels], albedo[3][kPixels], emissive[3][kPixels], metallic[kPixels], roughness[kPixels];
   HWY_ALIGN uint32_t instance[kPixels], material[kPixels];
 };
 
@@ -87,6 +87,8 @@ HWY_INLINE void storeStrip(const Strip& s, const Wanted& wanted, int x, int y, i
     storePlane(s.albedo[c], x, y, rows, out.albedo[c]);
     storePlane(s.emissive[c], x, y, rows, out.emissive[c]);
   }
+  storePlane(s.metallic, x, y, rows, out.metallic);
+  storePlane(s.roughness, x, y, rows, out.roughness);
   storePlane(s.instance, x, y, rows, out.instance);
   storePlane(s.material, x, y, rows, out.material);
 }
@@ -138,6 +140,9 @@ HWY_INLINE void resolveCell(const SurfaceContext& context, const TileBuffers& ti
         if (wanted.normal) keep(s.normal, strip.normal, at);
         if (wanted.albedo) keep(s.albedo, strip.albedo, at);
         if (wanted.emissive) keep(s.emissive, strip.emissive, at);
+        if (!wanted.gloss) continue;
+        hn::Store(s.gloss.metallic, d, strip.metallic + at);
+        hn::Store(s.gloss.roughness, d, strip.roughness + at);
       }
     const int y = top + row * kBlock;
     storeStrip(strip, wanted, tile.x + left, tile.y + y, std::min(kBlock, tile.height - y), out);
@@ -156,6 +161,7 @@ void ResolveEmpty(const TileBuffers& tile, GBuffer& out) {
   fill(tile, out.depth, std::numeric_limits<float>::infinity());
   for (int c = 0; c < 3; ++c)
     for (Plane<float>* p : {&out.normal[c], &out.albedo[c], &out.emissive[c], &out.position[c]}) fill(tile, *p, 0.0f);
+  for (Plane<float>* p : {&out.metallic, &out.roughness}) fill(tile, *p, 0.0f);
   for (Plane<uint32_t>* p : {&out.triangle, &out.instance, &out.material}) fill(tile, *p, kNoTriangle);
   hwy::FlushStream();
 }

@@ -88,6 +88,10 @@ void store(Plane<uint32_t>& plane, int x, int y, uint32_t v) {
   if (!plane.empty()) plane.at(x, y) = v;
 }
 
+void store(Plane<float>& plane, int x, int y, float v) {
+  if (!plane.empty()) plane.at(x, y) = v;
+}
+
 // Of a pixel's centre in view space.
 glm::vec3 positionAt(const View& view, int x, int y, float zView) {
   glm::vec3 p((float(view.xCenterSub(x)) - view.xShiftSub) / view.xScaleSub,
@@ -105,6 +109,8 @@ void resolveImplicit(const View& view, const ImplicitDraw& surface, const glm::v
   store(out.normal, x, y, normal);
   store(out.albedo, x, y, surface.albedo);
   store(out.emissive, x, y, surface.emissive);
+  store(out.metallic, x, y, surface.metallic);
+  store(out.roughness, x, y, surface.roughness);
   store(out.position, x, y, positionAt(view, x, y, zView));
   store(out.triangle, x, y, surface.id);
   store(out.instance, x, y, surface.instance);
@@ -112,6 +118,16 @@ void resolveImplicit(const View& view, const ImplicitDraw& surface, const glm::v
   store(out.heightMap, x, y, kNoTriangle);
   for (Plane<float>& plane : out.relief)
     if (!plane.empty()) plane.at(x, y) = 0;
+}
+
+glm::vec2 metallicRoughness(const SurfaceContext& context, const SurfacePoint& p) {
+  const Material& m = *p.draw->material;
+  glm::vec2 v(m.metallic, m.roughness);
+  if (m.metallicRoughnessMap.texture >= 0) {
+    const glm::vec4 texel = sampleSlot(context, p, m.metallicRoughnessMap);
+    v *= glm::vec2(texel.b, texel.g);
+  }
+  return v;
 }
 
 void resolveShaded(const SurfaceContext& context, uint32_t id, float key, const Shaded& shaded, int x, int y, GBuffer& out) {
@@ -128,6 +144,8 @@ void resolveShaded(const SurfaceContext& context, uint32_t id, float key, const 
   store(out.normal, x, y, shaded.normal);
   store(out.albedo, x, y, unlit ? glm::vec3(0) : base);
   store(out.emissive, x, y, unlit ? base : emitted);
+  store(out.metallic, x, y, unlit ? 0 : std::min(nonNegative(shaded.metallic), 1.0f));
+  store(out.roughness, x, y, unlit ? 1 : std::min(nonNegative(shaded.roughness), 1.0f));
   store(out.position, x, y, positionAt(view, x, y, zView));
   store(out.triangle, x, y, id);
   store(out.instance, x, y, draw.instance);
@@ -141,10 +159,13 @@ void resolvePixel(const SurfaceContext& context, uint32_t id, float key, int x, 
     const SurfacePoint p = seePixel(*context.view, draw, id - draw.firstTriangle, x, y);
     glm::vec3 emitted = m.emissive;
     if (m.emissiveMap.texture >= 0) emitted *= glm::vec3(sampleSlot(context, p, m.emissiveMap));
-    return resolveShaded(context, id, key, {shadingNormal(context, p), glm::vec3(baseColor(context, p)), emitted}, x, y, out);
+    const glm::vec2 gloss = metallicRoughness(context, p);
+    return resolveShaded(context, id, key, {shadingNormal(context, p), glm::vec3(baseColor(context, p)), emitted, gloss.x, gloss.y}, x, y, out);
   }
   if (!out.depth.empty()) out.depth.at(x, y) = std::numeric_limits<float>::infinity();
   for (auto* planes : {out.normal, out.albedo, out.emissive, out.position}) store(planes, x, y, glm::vec3(0));
+  store(out.metallic, x, y, 0);
+  store(out.roughness, x, y, 0);
   for (Plane<uint32_t>* plane : {&out.triangle, &out.instance, &out.material}) store(*plane, x, y, kNoTriangle);
 }
 

@@ -65,9 +65,19 @@ HWY_INLINE V3 interpolatedNormal(const VectorTriangles& t, const Seen& s) {
   return n;
 }
 
-// Albedo and emission where the material says it all.
-HWY_INLINE void constantColors(const VectorTriangles& t, const Wanted& wanted, V3& albedo, V3& emission) {
+struct Shaded {
+  V3 normal, albedo, emissive;
+  Gloss gloss;
+};
+
+HWY_INLINE Gloss select(MF mask, const Gloss& yes, const Gloss& no) {
+  return {hn::IfThenElse(mask, yes.metallic, no.metallic), hn::IfThenElse(mask, yes.roughness, no.roughness)};
+}
+
+// What the material says of albedo, emission and gloss.
+HWY_INLINE void constantColors(const VectorTriangles& t, const Wanted& wanted, Shaded& out) {
   const DF d;
+  V3 &albedo = out.albedo, &emission = out.emissive;
   auto set = [&](const auto& c) HWY_ATTR { return V3{hn::Set(d, c.r), hn::Set(d, c.g), hn::Set(d, c.b)}; };
   const V3 none{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
   for (int k = 0; k < t.draws; ++k) {
@@ -78,15 +88,12 @@ HWY_INLINE void constantColors(const VectorTriangles& t, const Wanted& wanted, V
     const MF mine = t.showsDraw(draw);
     const V3 a = m.unlit ? none : base;
     albedo = k == 0 ? a : select(mine, a, albedo);
+    if (wanted.gloss) out.gloss = k == 0 ? constantGloss(m) : select(mine, constantGloss(m), out.gloss);
     if (!wanted.emissive) continue;
     const V3 light = m.unlit ? base : emissionOf(e.x, e.y, e.z);
     emission = k == 0 ? light : select(mine, light, emission);
   }
 }
-
-struct Shaded {
-  V3 normal, albedo, emissive;
-};
 
 // The pixels of one draw: what its textures and vertex colours say, and normals where the vertices' give none.
 HWY_NOINLINE void shadeDraw(const SurfaceContext& context, const Draw& draw, const Wanted& wanted, const VectorTriangles& t, MF noNormal,
@@ -127,6 +134,10 @@ HWY_NOINLINE void shadeDraw(const SurfaceContext& context, const Draw& draw, con
     auto times = [&](float factor, VF v) HWY_ATTR { return hn::Mul(hn::Set(d, factor), v); };
     out.emissive = select(mine, emissionOf(times(m.emissive.r, e.r), times(m.emissive.g, e.g), times(m.emissive.b, e.b)), out.emissive);
   }
+  if (variesInGloss(draw, wanted)) {
+    const Rgba texel = sampleSlot(context, draw, s, m.metallicRoughnessMap);
+    out.gloss = select(mine, glossOf(m, texel.g, texel.b), out.gloss);
+  }
 }
 
 // dx, dy: pixels from the cell's first. Zero where not covered.
@@ -134,7 +145,7 @@ HWY_INLINE Shaded shade(const SurfaceContext& context, const Wanted& wanted, con
   const DF d;
   const VF zero = hn::Zero(d);
   const V3 none{zero, zero, zero};
-  Shaded out{none, none, none};
+  Shaded out{none, none, none, {zero, zero}};
   if (t.count == 0) return out;
   const MF nowhere = hn::Lt(zero, zero);
   MF noNormal = nowhere, behind = nowhere;
@@ -150,12 +161,13 @@ HWY_INLINE Shaded shade(const SurfaceContext& context, const Wanted& wanted, con
       if (t.draw(k).material->doubleSided)
         behind = hn::Or(behind, hn::And(t.showsDraw(t.draw(k)), t.draw(k).mirrored ? hn::Not(s.clockwise) : s.clockwise));
   }
-  constantColors(t, wanted, out.albedo, out.emissive);
+  constantColors(t, wanted, out);
   if (HWY_UNLIKELY(more || !hn::AllFalse(d, noNormal)))
     for (int k = 0; k < t.draws; ++k)
       if (t.firstOfItsDraw(k)) shadeDraw(context, t.draw(k), wanted, t, noNormal, s, out);
   out.normal = select(behind, {hn::Neg(out.normal.x), hn::Neg(out.normal.y), hn::Neg(out.normal.z)}, out.normal);
-  return {select(covered, out.normal, none), select(covered, out.albedo, none), select(covered, out.emissive, none)};
+  return {select(covered, out.normal, none), select(covered, out.albedo, none), select(covered, out.emissive, none),
+          select(covered, out.gloss, {zero, zero})};
 }
 
 }  // namespace HWY_NAMESPACE

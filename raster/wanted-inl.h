@@ -16,11 +16,12 @@ namespace obscura::raster {
 namespace HWY_NAMESPACE {
 
 struct Wanted {
-  bool normal, albedo, emissive, draws;  // draws: instance or material
+  bool normal, albedo, emissive, gloss, draws;  // gloss: metallic or roughness; draws: instance or material
   explicit Wanted(const GBuffer& g)
       : normal(!g.normal[0].empty()), albedo(!g.albedo[0].empty()), emissive(!g.emissive[0].empty()),
+        gloss(!g.metallic.empty() || !g.roughness.empty()),
         draws(!g.instance.empty() || !g.material.empty()) {}
-  bool surfaces() const { return normal || albedo || emissive; }
+  bool surfaces() const { return normal || albedo || emissive || gloss; }
 };
 
 // The base colour is asked for and differs from pixel to pixel.
@@ -33,13 +34,17 @@ HWY_INLINE bool variesInEmission(const Draw& draw, const Wanted& wanted) {
   return wanted.emissive && !draw.material->unlit && draw.material->emissiveMap.texture >= 0;
 }
 
+HWY_INLINE bool variesInGloss(const Draw& draw, const Wanted& wanted) {
+  return wanted.gloss && !draw.material->unlit && draw.material->metallicRoughnessMap.texture >= 0;
+}
+
 HWY_INLINE bool mapsNormals(const Draw& draw, const Wanted& wanted) {
   return wanted.normal && draw.material->normalMap.texture >= 0 && draw.material->heightMap.texture < 0;
 }
 
 // Attributes other than interpolated normals and constant colours.
 HWY_INLINE bool needsMore(const Draw& draw, const Wanted& wanted) {
-  return variesInColor(draw, wanted) || variesInEmission(draw, wanted) || mapsNormals(draw, wanted);
+  return variesInColor(draw, wanted) || variesInEmission(draw, wanted) || variesInGloss(draw, wanted) || mapsNormals(draw, wanted);
 }
 
 // [0, 1]; NaN is 0.
@@ -57,6 +62,18 @@ HWY_INLINE VF nonNegative(VF v) {
 
 HWY_INLINE V3 albedoOf(VF r, VF g, VF b) { return {unitRange(r), unitRange(g), unitRange(b)}; }
 HWY_INLINE V3 emissionOf(VF r, VF g, VF b) { return {nonNegative(r), nonNegative(g), nonNegative(b)}; }
+
+struct Gloss {
+  VF metallic, roughness;
+};
+HWY_INLINE Gloss constantGloss(const Material& m) {
+  const DF d;
+  return {unitRange(hn::Set(d, m.unlit ? 0 : m.metallic)), unitRange(hn::Set(d, m.unlit ? 1 : m.roughness))};
+}
+HWY_INLINE Gloss glossOf(const Material& m, VF green, VF blue) {
+  const DF d;
+  return {unitRange(hn::Mul(hn::Set(d, m.metallic), blue)), unitRange(hn::Mul(hn::Set(d, m.roughness), green))};
+}
 
 }  // namespace HWY_NAMESPACE
 }  // namespace obscura::raster

@@ -52,6 +52,8 @@ inline void checkUsable(const raster::GBuffer& g, float zNear, float zFar) {
       good &= g.albedo[c].at(x, y) >= 0 && g.albedo[c].at(x, y) <= 1 && g.emissive[c].at(x, y) >= 0;
       length += g.normal[c].at(x, y) * g.normal[c].at(x, y);
     }
+    if (!g.metallic.empty())
+      good &= g.metallic.at(x, y) >= 0 && g.metallic.at(x, y) <= 1 && g.roughness.at(x, y) >= 0 && g.roughness.at(x, y) <= 1;
     good &= std::fabs(length - 1) < 1e-5f;
     if (!good)
       FAIL("pixel (" << x << ", " << y << "), triangle " << g.triangle.at(x, y) << ": depth " << z << " in [" << zNear

@@ -206,6 +206,7 @@ TEST_CASE("hostile: NaN, infinity and denormals in any attribute or factor leave
     Material& mapped = s.materials[seed % 2];
     spoil(mapped.baseColor[int(seed) % 3]);
     spoil(mapped.normalScale);
+    spoil(seed % 2 ? mapped.metallic : mapped.roughness);
     spoil(mapped.baseColorMap.uvFromUv[seed % 6]);
     if (seed % 3 == 0) spoil(mapped.emissive[0]);
     m.clusters = {};

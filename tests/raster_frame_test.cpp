@@ -89,6 +89,44 @@ TEST_CASE("frame: the planes that are asked for do not depend on what else is as
   for (int c = 0; c < 3; ++c) CHECK(firstDifference("normal", some.normal[c], all.normal[c]) == "");
 }
 
+TEST_CASE("frame: metallic and roughness are the factors times blue and green of their texture, and of what is unlit 0 and 1") {
+  TestScene s;
+  s.texels.push_back({0xFF3366CCu});  // blue 51, green 102, red 204
+  TextureView t;
+  t.texels = s.texels[0];
+  t.width = t.height = 1;
+  s.textures.push_back(t);
+  s.materials.resize(3);
+  for (Material& m : s.materials) m.metallic = 0.5f, m.roughness = 0.75f;
+  s.materials[1].metallicRoughnessMap.texture = s.materials[2].metallicRoughnessMap.texture = 0;
+  s.materials[2].unlit = true;
+  for (int k = 0; k < 3; ++k) {  // one above the other
+    TestMesh& m = s.addMesh();
+    const float y = float(k - 1);
+    TestScene::addQuad(m, {-1, y - 0.4f, 0}, {1, y - 0.4f, 0}, {1, y + 0.4f, 0}, {-1, y + 0.4f, 0});
+    s.place(m, uint32_t(k));
+  }
+  s.camera = perspective(0.7, 4.0 / 3, 0.1);
+  s.camera.viewFromWorld = lookAt({0, 0, 4}, {0, 0, 0}, {0, 1, 0});
+  const GBuffer g = renderWith(s, {});
+  const float metallic[] = {0.5f, 0.5f * (51 / 255.0f), 0}, roughness[] = {0.75f, 0.75f * (102 / 255.0f), 1};
+  int seen[3] = {};
+  for (int y = 0; y < g.height; ++y)
+    for (int x = 0; x < g.width; ++x) {
+      const uint32_t k = g.material.at(x, y);
+      REQUIRE(g.metallic.at(x, y) == (k < 3 ? metallic[k] : 0));
+      REQUIRE(g.roughness.at(x, y) == (k < 3 ? roughness[k] : 0));
+      if (k < 3) ++seen[k];
+    }
+  for (int count : seen) CHECK(count > 100);
+
+  PlaneSet only;
+  only.roughness = true;
+  const GBuffer some = renderWith(s, {}, only);
+  CHECK((some.metallic.empty() && some.depth.empty()));
+  CHECK(firstDifference("roughness", some.roughness, g.roughness) == "");
+}
+
 TEST_CASE("frame: a host's rounding mode and flush-to-zero do not reach the pixels, and are given back") {
   const TestScene s = soupScene(4);
   const GBuffer expected = renderWith(s, {});

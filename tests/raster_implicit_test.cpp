@@ -52,6 +52,7 @@ TestScene floorScene() {
   s.materials[0].emissive = {0.1f, 0, 2};
   s.materials[1].baseColor = {0.2f, 0.3f, 0.4f, 1};
   s.materials[1].doubleSided = true;
+  s.materials[1].metallic = 0.3f, s.materials[1].roughness = 7;
   TestMesh& floor = s.addMesh();
   TestScene::addQuad(floor, {-3, 0, 3}, {3, 0, 3}, {3, 0, -3}, {-3, 0, -3});
   s.place(floor);
@@ -134,6 +135,8 @@ TEST_CASE("implicit: a sphere half sunk in a floor of triangles meets it where g
         REQUIRE(g.instance.at(x, y) == 1);   // after the floor
         REQUIRE(g.material.at(x, y) == 1);
         REQUIRE(g.albedo[1].at(x, y) == 0.3f);
+        REQUIRE(g.metallic.at(x, y) == 0.3f);
+        REQUIRE(g.roughness.at(x, y) == 1);
         const glm::dvec3 n = (r.eye + r.direction * z - glm::dvec3(0.2, 0, 0));
         const glm::dvec3 view = glm::dvec3(s.camera.viewFromWorld * glm::dvec4(n, 0));
         for (int c = 0; c < 3; ++c) REQUIRE(g.normal[c].at(x, y) == Approx(view[c]).margin(2e-6));

@@ -355,7 +355,7 @@ TEST_CASE("depth alone: a G-buffer that is used again holds no planes of the fra
 TEST_CASE("gbuffer: it has the planes that it was made with, and no others") {
   for (bool PlaneSet::*plane : {&PlaneSet::depth, &PlaneSet::normal, &PlaneSet::albedo, &PlaneSet::emissive,
                                 &PlaneSet::position, &PlaneSet::triangle, &PlaneSet::instance, &PlaneSet::material,
-                                &PlaneSet::depth2, &PlaneSet::depthBack}) {
+                                &PlaneSet::depth2, &PlaneSet::depthBack, &PlaneSet::metallic, &PlaneSet::roughness}) {
     PlaneSet one, others = kAllLayers;
     one.*plane = true;
     others.*plane = false;

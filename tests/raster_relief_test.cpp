@@ -26,7 +26,7 @@ TestScene squareScene(std::vector<float> heights, int width, int height, float s
   s.textures.push_back(t);
   s.materials.resize(1);
   Material& m = s.materials[0];
-  m.baseColorMap.texture = m.emissiveMap.texture = 0;
+  m.baseColorMap.texture = m.emissiveMap.texture = m.metallicRoughnessMap.texture = 0;
   m.emissive = {1, 2, 3};
   m.heightMap.texture = 0;
   m.heightScale = scale;
@@ -47,7 +47,7 @@ std::vector<float> noise(int count, uint32_t seed) {
   return h;
 }
 
-constexpr PlaneSet kWithRelief{true, true, true, true, true, true, true, true, true, true, 0.01f, true};
+constexpr PlaneSet kWithRelief{true, true, true, true, true, true, true, true, true, true, 0.01f, true, true, true};
 
 std::string differenceOfRelief(const GBuffer& a, const GBuffer& b) {
   std::string d = firstDifference(a, b);

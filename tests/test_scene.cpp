@@ -64,11 +64,14 @@ TestScene soupScene(uint32_t seed) {
 
   s.materials.resize(2);
   s.materials[0].baseColor = {0.5f, 0.6f, 0.7f, 1};
+  s.materials[0].metallic = 0.25f, s.materials[0].roughness = 0.6f;
   s.materials[0].doubleSided = seed % 5 == 0;
   Material& mapped = s.materials[1];
   mapped.baseColorMap.texture = mapped.normalMap.texture = mapped.emissiveMap.texture = 0;
   mapped.baseColorMap.uvFromUv = {0.8f, 0.1f, 0.2f, -0.1f, 1.2f, 0.4f};
   mapped.emissive = {1, 0.5f, 2};
+  mapped.metallicRoughnessMap = {0, 0, {1.1f, 0, 0.3f, 0.2f, 0.9f, 0}};
+  mapped.metallic = 0.9f, mapped.roughness = 0.7f;
   mapped.doubleSided = (seed & 16) != 0;
   mapped.alphaMode = seed & 4 ? AlphaMode::Mask : AlphaMode::Opaque;
   mapped.unlit = seed % 11 == 0;
@@ -129,6 +132,8 @@ std::string firstDifference(const GBuffer& a, const GBuffer& b) {
     if (d.empty()) d = firstDifference("emissive", a.emissive[c], b.emissive[c]);
     if (d.empty()) d = firstDifference("position", a.position[c], b.position[c]);
   }
+  if (d.empty()) d = firstDifference("metallic", a.metallic, b.metallic);
+  if (d.empty()) d = firstDifference("roughness", a.roughness, b.roughness);
   if (d.empty()) d = firstDifference("depth2", a.depth2, b.depth2);
   if (d.empty()) d = firstDifference("depthBack", a.depthBack, b.depthBack);
   return d;
