@@ -34,30 +34,40 @@ struct Bench {
 
   PlaneRefs result(const ParetoRow& row) const {
     const post::Transfer& t = frame.transfer;
-    if (row.quantity == ParetoQuantity::Obscurance) return {&t.obscurance};
-    return {&t.w[0], &t.w[1], &t.w[2]};
+    if (row.transfer()) return {&t.w[0], &t.w[1], &t.w[2]};
+    return {&t.obscurance};
   }
 };
 
 void runRow(const engine::Scene& scene, engine::FrameSettings settings, const ParetoRow& row, Bench& bench) {
-  settings.aovs = {row.quantity == ParetoQuantity::Obscurance ? engine::Aov::Obscurance : engine::Aov::Transfer};
+  settings.aovs = {row.transfer() ? engine::Aov::Transfer : engine::Aov::Obscurance};
   settings.transfer = row.settings;
+  if (row.settings.layers == 2) settings.separation = float(engine::kLayerSeparation * double(row.settings.radius));
   if (const auto done = bench.renderer.render(scene, settings, bench.frame); !done) throw std::runtime_error(done.error().text());
 }
 
-// On the G-buffer that the frame has.
-void runEmbree(const RayScene& rays, const engine::FrameSettings& settings, const ParetoRow& row, raster::Parallel& parallel,
-               raster::Target target, Bench& bench) {
+// By Embree or by a peer, on the G-buffer that the frame has.
+void runOther(const RayScene* rays, const engine::FrameSettings& settings, const ParetoRow& row, raster::Parallel& parallel,
+              raster::Target target, Bench& bench) {
   engine::Frame& f = bench.frame;
   const raster::Window window = {f.x, f.y, f.width, f.height};
-  const post::TransferInput in = {&f.g, post::makeProjector(settings.camera, f.imageWidth, f.imageHeight, window), row.settings, {}, nullptr};
+  post::TransferInput in = {&f.g, post::makeProjector(settings.camera, f.imageWidth, f.imageHeight, window), row.settings, {}, nullptr};
+  const auto forRows = [&](const auto& body) {
+    parallel.forRanges(size_t(f.height), 8, [&](size_t y0, size_t y1, int) { body(int(y0), int(y1)); });
+  };
   raster::Stopwatch watch;
   bench.sums = post::makeTransferSums(in, std::move(bench.sums));
-  traceObscurance(rays, in, parallel, bench.sums);
+  if (row.peer) {
+    in.offsets = peerPoints(*row.peer, row.settings);
+    forRows([&](int y0, int y1) { peerOcclusion(*row.peer, in, y0, y1, bench.sums, target); });
+  } else {
+    traceObscurance(*rays, in, parallel, bench.sums);
+  }
   f.timings.transfer = watch.lap();
   f.transfer = post::makeTransfer(f.width, f.height, {true}, std::move(f.transfer));
-  parallel.forRanges(size_t(f.height), 8, [&](size_t y0, size_t y1, int) {
-    post::depthFilter(in, bench.sums, int(y0), int(y1), f.transfer, target);
+  forRows([&](int y0, int y1) {
+    post::depthFilter(in, bench.sums, y0, y1, f.transfer, target);
+    if (row.peer) clampPeers(y0, y1, f.transfer);
   });
   f.timings.filter = watch.lap();
 }
@@ -82,12 +92,12 @@ ParetoBenchmark::ParetoBenchmark() {
 }
 
 void ParetoBenchmark::addTo(CLI::App& app, int& status) {
-  CLI::App* c = app.add_subcommand("pareto", "Run time against error: estimators, settings and Embree, by the traced truth");
+  CLI::App* c = app.add_subcommand("pareto", "Run time against error: estimators, settings, Embree and other methods, by the traced truth");
   c->add_option("scenes", scenes, "one or more .gltf or .glb files")->required();
   c->add_option("--frames", frames, "measured for each row, in turns, after one that is not")
       ->check(CLI::Range(1, 10000))->capture_default_str();
   options.addTo(*c);
-  removeEstimatorOptions(*c, options, {"--radius", "--membership", "--bias", "--silhouette-bound", "--filter-threshold"});
+  removeEstimatorOptions(*c, options, {"--radius", "--membership", "--bias", "--filter-threshold"});
   const auto list = [&](const char* name, auto& values, const char* what, const CLI::Validator& valid) {
     c->add_option(name, values, what)->delimiter(',')->allow_extra_args(false)->check(valid)->capture_default_str()->group("Sweep");
   };
@@ -95,11 +105,15 @@ void ParetoBenchmark::addTo(CLI::App& app, int& status) {
   list("--steps", sweep.steps, "m, test points per ray", CLI::Range(1, 4));
   list("--rays-embree", sweep.rays, "rays a pixel of Embree's rows", CLI::Range(1, 1024));
   list("--estimator", sweep.estimators, "where the rays come from", CLI::IsMember(namesOf(kEstimatorNames)));
+  list("--peer", sweep.peers, "methods of other people: peer_methods.h", CLI::IsMember(namesOf(kPeerMethodNames)));
+  list("--peer-steps", sweep.peerSteps, "steps of hbao and gtao in each of their n directions", CLI::Range(1, 16));
   list("--interleave", sweep.interleave, "other rays in each pixel of the pattern", CLI::IsMember({"on", "off"}));
+  list("--layers", sweep.layers, "of depth that occlude; what the second costs to draw is in no row", CLI::Range(1, 2));
+  list("--silhouette-bound", sweep.silhouetteBound, "whether what lies R or more before a test point lets it through", CLI::IsMember({"on", "off"}));
   std::vector<std::string> filters = namesOf(kFilterGuideNames);
   filters.insert(filters.begin(), "off");
   list("--filter", sweep.filters, "none, or a box guided by these", CLI::IsMember(filters));
-  list("--quantity", sweep.quantities, "obscurance, or the transfer by whose albedo", CLI::IsMember(namesOf(kParetoQuantityNames)));
+  list("--quantity", sweep.quantities, "obscurance, what each peer aims at itself, or the transfer by whose albedo", CLI::IsMember(namesOf(kParetoQuantityNames)));
   truth.addTo(*c);
   const char* output = "Output";
   c->add_flag("--json", json, "one JSON object instead of tables")->group(output);
@@ -157,7 +171,7 @@ engine::Result<ParetoScene> ParetoBenchmark::measure(const std::string& file, Pr
   raster::Parallel parallel(resolved->raster.threads);
   std::optional<RaySurface> surface;
   std::optional<RayScene> rays;
-  std::optional<Bench> benches[3];
+  std::optional<Bench> benches[kParetoQuantities];
   for (int k = -1; k < frames; ++k)
     for (size_t i = 0; i < out.rows.size(); ++i) {
       ParetoRow& row = out.rows[i];
@@ -166,10 +180,11 @@ engine::Result<ParetoScene> ParetoBenchmark::measure(const std::string& file, Pr
         rays.emplace(*surface, resolved->raster.threads);
         out.buildMs = rays->buildMs();
       }
+      const bool other = row.embree() || row.peer;
       std::optional<Bench>& own = benches[size_t(row.quantity)];
-      if (!own) own.emplace(resolved->raster);
-      Bench& bench = row.embree() ? rayBench : *own;
-      if (row.embree()) runEmbree(*rays, settings, row, parallel, target, bench);
+      if (!own && !other) own.emplace(resolved->raster);
+      Bench& bench = other ? rayBench : *own;
+      if (other) runOther(rays ? &*rays : nullptr, settings, row, parallel, target, bench);
       else runRow(*scene, settings, row, bench);
       const PlaneRefs result = bench.result(row);
       const std::string digest = digestOfPlanes(result);

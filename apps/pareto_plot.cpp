@@ -37,8 +37,10 @@ void addPanel(std::string& script, const ParetoScene& scene, const std::string& 
   for (const ParetoRow& r : scene.rows) {
     if (r.truth() != truth) continue;
     std::string name = r.method;
-    if (r.quantity != ParetoQuantity::Obscurance) name += " " + nameOf(kParetoQuantityNames, r.quantity);
-    if (r.settings.steps > 1) name += ", m = " + std::to_string(r.settings.steps);
+    if (r.transfer()) name += " " + nameOf(kParetoQuantityNames, r.quantity);
+    if (r.steps() > 1) name += ", m = " + std::to_string(r.steps());
+    if (r.settings.layers > 1) name += ", " + std::to_string(r.settings.layers) + " layers";
+    if (!r.settings.silhouetteBound) name += ", no bound";
     if (!r.settings.interleave) name += ", not interleaved";
     series[name + ", " + (r.settings.filter ? r.filter() + " filter" : "no filter")].emplace_back(r.ms(), r.error.rmse);
     if (r.front) front.emplace_back(r.ms(), r.error.rmse);

@@ -23,6 +23,13 @@ void addObscurances(double d, double cosine, Sums& sums) {
   sums[int(TruthQuantity::TangentSphere)] += cosine > 0 ? 2 * chord * chord * chord / cosine : 0;
 }
 
+// The same of what directions tell that are evenly spread over the half sphere.
+void addEvenly(double d, Sums& sums) {
+  const double part = std::min(d, 1.0);
+  sums[int(TruthQuantity::Ball)] += part * part * part;
+  sums[int(TruthQuantity::Horizon)] += part * part;
+}
+
 struct Path {
   TruthStart at;
   glm::dvec3 light{1};  // what of La still has to come from where the path is
@@ -43,7 +50,7 @@ class Tracer {
       for (int i = 0; i < count; ++i) {
         batch_.reach[i] = -1;
         if (alive_[i] && survives(i, first + uint32_t(i), hashed(seed, uint32_t(2 * hits)))) {
-          aim(i, sobolPoint(first + uint32_t(i), hashed(seed, uint32_t(2 * hits + 1))));
+          aim(i, cosineDirection(paths_[i].at.normal, sobolPoint(first + uint32_t(i), hashed(seed, uint32_t(2 * hits + 1)))));
           any = true;
         }
       }
@@ -54,6 +61,17 @@ class Tracer {
     }
     for (int i = 0; i < count; ++i)
       if (alive_[i]) addLight(paths_[i].light, sums);
+  }
+
+  // Alike, first hits of directions that are evenly spread.
+  void traceEvenly(const TruthStart& start, uint32_t first, int count, uint32_t seed, Sums& sums) {
+    batch_.count = count;
+    for (int i = 0; i < count; ++i) {
+      paths_[i].at = start, batch_.reach[i] = -1;
+      aim(i, evenDirection(start.normal, sobolPoint(first + uint32_t(i), seed)));
+    }
+    rays_.intersect(batch_);
+    for (int i = 0; i < count; ++i) addEvenly(distance(i), sums);
   }
 
  private:
@@ -72,9 +90,9 @@ class Tracer {
     return alive_[i];
   }
 
-  void aim(int i, const glm::dvec2& xi) {
+  void aim(int i, const glm::dvec3& direction) {
     Path& p = paths_[i];
-    p.direction = cosineDirection(p.at.normal, xi);
+    p.direction = direction;
     for (int c = 0; c < 3; ++c) {
       batch_.origin[c][i] = float(p.at.position[c]);
       batch_.direction[c][i] = float(p.direction[c]);
@@ -82,16 +100,19 @@ class Tracer {
     if (glm::dot(p.direction, p.at.outside) > 0) batch_.reach[i] = settings_.radius;
   }
 
+  bool below(int i) const { return batch_.reach[i] < 0; }
+  bool hit(int i) const { return !below(i) && batch_.instance[i] != RayBatch::kMiss; }
+  double distance(int i) const { return below(i) ? 0 : hit(i) ? double(batch_.reach[i]) / settings_.radius : 1; }  // of R
+
   void meet(int i, bool first, Sums& sums) {
     Path& p = paths_[i];
-    const bool below = batch_.reach[i] < 0, hit = !below && batch_.instance[i] != RayBatch::kMiss;
-    const double d = below ? 0 : hit ? double(batch_.reach[i]) / settings_.radius : 1;
+    const double d = distance(i);
     if (first) addObscurances(d, glm::dot(p.direction, p.at.normal), sums);
     const double open = d < 1 ? post::membershipOf(settings_.membership, d) : 1;
     addLight(p.light * open, sums);
-    if (hit) p.at = startAtHit(surface_, batch_.point(i), p.direction);
+    if (hit(i)) p.at = startAtHit(surface_, batch_.point(i), p.direction);
     p.light *= (1 - open) * glm::dvec3(p.at.albedo);
-    alive_[i] = (hit || below) && open < 1 && std::max({p.light.x, p.light.y, p.light.z}) > 0;
+    alive_[i] = (hit(i) || below(i)) && open < 1 && std::max({p.light.x, p.light.y, p.light.z}) > 0;
   }
 
   const RaySurface& surface_;
@@ -107,8 +128,11 @@ void tracePixel(Tracer& tracer, const TruthStart& start, uint32_t pixelSeed, con
   double mean[kTruthQuantities] = {}, square[kTruthQuantities] = {};
   for (int k = 0; k < kTruthScrambles; ++k) {
     Sums sums = {};
-    for (int i = 0; i < perScramble; i += RayBatch::kSize)
-      tracer.trace(start, uint32_t(i), std::min(RayBatch::kSize, perScramble - i), hashed(pixelSeed, uint32_t(k)), sums);
+    for (int i = 0; i < perScramble; i += RayBatch::kSize) {
+      const int count = std::min(RayBatch::kSize, perScramble - i);
+      tracer.trace(start, uint32_t(i), count, hashed(pixelSeed, uint32_t(k)), sums);
+      tracer.traceEvenly(start, uint32_t(i), count, hashed(pixelSeed, uint32_t(k + kTruthScrambles)), sums);
+    }
     for (int q = 0; q < kTruthQuantities; ++q) {
       const double v = sums[q] / perScramble;
       mean[q] += v / kTruthScrambles;

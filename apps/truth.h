@@ -26,9 +26,11 @@ constexpr double kTruthOffset = 0x1p-20;  // see TruthStart
 enum class TruthQuantity : uint8_t {
   Classic, Linear, Sqrt, Exponential,  // O for each membership, long paper, equation 3; Classic is ambient occlusion within R
   TangentSphere,                       // what of the sphere of radius R/2 that touches the surface is in sight of the point
+  Ball,                                // what of the half ball of radius R over the surface is in sight of the point
+  Horizon,                             // mean of min(d / R, 1)^2 over the half sphere, without the cosine
   TransferR, TransferG, TransferB      // W, equation 4, with the albedo at each hit
 };
-constexpr int kTruthQuantities = 8;
+constexpr int kTruthQuantities = 10;
 
 // One plane per quantity: the mean of the scrambles and its standard error. Empty pixels hold 1 and 0.
 struct Truth {
@@ -72,8 +74,9 @@ class TruthStarts {
 // A path that has hit something goes on from there: out of the triangle, on the side that it came from.
 TruthStart startAtHit(const RaySurface& surface, const TrianglePoint& p, const glm::dvec3& direction);
 
-// A cosine-distributed direction about n for a point of the unit square.
+// A cosine-distributed direction about n for a point of the unit square, and one evenly spread over the half sphere.
 glm::dvec3 cosineDirection(const glm::dvec3& n, const glm::dvec2& xi);
+glm::dvec3 evenDirection(const glm::dvec3& n, const glm::dvec2& xi);
 
 // done(rows) is told of finished rows, from any thread. Throws std::bad_alloc.
 Truth traceTruth(const RaySurface& surface, const RayScene& rays, const TruthStarts& starts, int width, int height,

@@ -29,6 +29,8 @@ const std::vector<TruthPlane>& truthPlanes() {
                                                  {"sqrt", {Q::Sqrt}},
                                                  {"exponential", {Q::Exponential}},
                                                  {"tangent_sphere", {Q::TangentSphere}},
+                                                 {"ball", {Q::Ball}},
+                                                 {"horizon", {Q::Horizon}},
                                                  {"transfer", {Q::TransferR, Q::TransferG, Q::TransferB}}};
   return planes;
 }

@@ -84,12 +84,25 @@ TruthStart startAtHit(const RaySurface& surface, const TrianglePoint& hit, const
 
 // Azimuth and squared sine, as the sample sets of the estimators have it; the frame about n after Duff et al. 2017. Shirley
 // and Chiu's map of the square has the same error for O, and twice that for the tangent sphere.
-glm::dvec3 cosineDirection(const glm::dvec3& n, const glm::dvec2& xi) {
-  const double phi = 2 * kPi * xi.x, r = std::sqrt(xi.y);
-  const double x = r * std::cos(phi), y = r * std::sin(phi), z = std::sqrt(1 - xi.y);
+namespace {
+
+// z of it along n.
+glm::dvec3 directionAbout(const glm::dvec3& n, double phi, double z, double across) {
+  const double x = across * std::cos(phi), y = across * std::sin(phi);
   const double sign = std::copysign(1.0, n.z), f = -1 / (sign + n.z), g = n.x * n.y * f;
   return glm::dvec3(1 + sign * n.x * n.x * f, sign * g, -sign * n.x) * x +
          glm::dvec3(g, sign + n.y * n.y * f, -n.y) * y + n * z;
+}
+
+}  // namespace
+
+glm::dvec3 cosineDirection(const glm::dvec3& n, const glm::dvec2& xi) {
+  return directionAbout(n, 2 * kPi * xi.x, std::sqrt(1 - xi.y), std::sqrt(xi.y));
+}
+
+glm::dvec3 evenDirection(const glm::dvec3& n, const glm::dvec2& xi) {
+  const double z = 1 - xi.y;
+  return directionAbout(n, 2 * kPi * xi.x, z, std::sqrt(1 - z * z));
 }
 
 }  // namespace obscura::apps

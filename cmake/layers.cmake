@@ -17,6 +17,15 @@ function(obscura_compile_options target)
   endif()
 endfunction()
 
+# Of what has kernels. With sanitizers, Highway's emulation of vectors by loops takes five minutes a kernel to compile: SSSE3 is
+# the least then, and SSE4, which differs by little, is left out. All targets compile the same sources.
+function(obscura_kernel_options target)
+  if(OBSCURA_SANITIZE AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    target_compile_options(${target} PRIVATE -mssse3)
+    target_compile_definitions(${target} PRIVATE HWY_DISABLED_TARGETS=HWY_SSE4)
+  endif()
+endfunction()
+
 function(obscura_layer name)
   cmake_parse_arguments(L "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   add_library(obscura_${name} ${L_SOURCES})
@@ -27,10 +36,5 @@ function(obscura_layer name)
     $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(obscura_${name} PUBLIC ${L_PUBLIC} PRIVATE ${L_PRIVATE})
   obscura_compile_options(obscura_${name})
-  # With sanitizers, Highway's emulation of vectors by loops takes five minutes a kernel to compile: SSSE3 is the least then,
-  # and SSE4, which differs by little, is left out. All targets compile the same sources.
-  if(OBSCURA_SANITIZE AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-    target_compile_options(obscura_${name} PRIVATE -mssse3)
-    target_compile_definitions(obscura_${name} PRIVATE HWY_DISABLED_TARGETS=HWY_SSE4)
-  endif()
+  obscura_kernel_options(obscura_${name})
 endfunction()

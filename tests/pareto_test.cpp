@@ -86,9 +86,11 @@ TEST_CASE("pareto: every combination is a row with all its figures; rays come ne
   std::map<std::string, double> rmse;
   for (const Json& r : scene["rows"]) {
     ++methods[r["method"]];
-    for (const char* figure : {"transfer_ms", "filter_ms", "ms", "rmse", "p95", "max", "ssim"}) CHECK(r[figure] > 0);
-    CHECK(r["truth"] == (r["quantity"] == "O" ? "O linear" : "W linear"));
-    CHECK((r["max"] >= r["p95"] && r["ssim"] <= 1 && r["rmse"] >= std::fabs(double(r["bias"]))));
+    for (const char* figure : {"transfer_ms", "filter_ms", "ms", "rmse", "p95", "max"}) CHECK(r[figure] > 0);
+    const std::map<std::string, std::string> own = {{"ssao", "ball"}, {"hbao", "horizon"}, {"vao", "tangent_sphere"}, {"gtao", "classic"}};
+    const std::string quantity = r["quantity"];
+    CHECK(r["truth"] == (quantity == "O" ? "O linear" : quantity == "method" ? own.at(r["method"]) : "W linear"));
+    CHECK((r["max"] >= r["p95"] && std::fabs(double(r["ssim"])) <= 1 && r["rmse"] >= std::fabs(double(r["bias"]))));
     if (r["method"] == "embree") rmse[std::string(r["filter"]) + std::to_string(int(r["samples"]))] = r["rmse"];
     if (r["method"] == "embree" && r["samples"] == 64 && r["filter"] == "off") CHECK(std::fabs(double(r["bias"])) < 0.005);
     bool beaten = false;
@@ -97,6 +99,7 @@ TEST_CASE("pareto: every combination is a row with all its figures; rays come ne
     else CHECK(beaten);
   }
   CHECK((methods["paper"] == 18 && methods["sobol"] == 18 && methods["box"] == 18 && methods["lines"] == 18 && methods["embree"] == 6));
+  CHECK((methods["ssao"] == 12 && methods["hbao"] == 12 && methods["vao"] == 12 && methods["gtao"] == 12));
   CHECK(rmse["off64"] < 0.03);
   CHECK(rmse["off64"] < rmse["off1"] / 3);
   CHECK(rmse["depth1"] < rmse["off1"]);
@@ -105,9 +108,24 @@ TEST_CASE("pareto: every combination is a row with all its figures; rays come ne
   CHECK(script.find("set logscale xy") != script.npos);
   CHECK(script.find("O linear") != script.npos);
   CHECK(script.find("W linear") != script.npos);
+  CHECK(script.find("tangent_sphere") != script.npos);
   const auto map = engine::readImage(s / "map.png");
   REQUIRE(map.ok());
   CHECK((map->width == 32 && map->height == 24 && map->channels == 3));
+}
+
+TEST_CASE("pareto: layers, the silhouettes' bound and the steps of horizons are swept, and each changes what is measured") {
+  const SceneFolder s;
+  const Finished f = pareto(s, {"--json", "--estimator", "box", "--filter", "off", "--quantity", "O",
+                                "--layers", "1,2", "--silhouette-bound", "on,off", "--peer", "vao,gtao", "--peer-steps", "2,4"});
+  INFO(f.err);
+  REQUIRE(f.code == 0);
+  const Json rows = Json::parse(f.out, nullptr, false)["scenes"][0]["rows"];
+  REQUIRE(rows.size() == 2 * (4 + 1 + 2 + 1));
+  const auto differ = [&](int a, int b) { return rows[size_t(a)]["digest"] != rows[size_t(b)]["digest"]; };  // n = 4
+  CHECK((differ(1, 3) && differ(1, 5) && differ(11, 13)));
+  CHECK((rows[0]["layers"] == 1 && rows[4]["layers"] == 2 && rows[2]["silhouette_bound"] == false));
+  CHECK((rows[8]["steps"] == 1 && rows[10]["steps"] == 2 && rows[12]["steps"] == 4));
 }
 
 TEST_CASE("pareto: the table has a line for each row; several scenes have a table each; nonsense ends with exit code 2") {
@@ -120,11 +138,11 @@ TEST_CASE("pareto: the table has a line for each row; several scenes have a tabl
   for (size_t at = f.out.find("row method"); at != f.out.npos; at = f.out.find("row method", at + 1)) ++tables;
   for (size_t at = f.out.find(" plane "); at != f.out.npos; at = f.out.find(" plane ", at + 1)) ++rows;
   CHECK(tables == 2);
-  CHECK(rows == 2 * (2 + 2 + 2));
+  CHECK(rows == 2 * (2 + 2 + 4 * 2 + 2));
   using Words = std::vector<std::string>;
-  for (const Words& words : {Words{"--map", "0", s / "m.png"}, Words{"--map", "79", s / "m.png"}, Words{"--map", "x", s / "m.png"},
+  for (const Words& words : {Words{"--map", "0", s / "m.png"}, Words{"--map", "127", s / "m.png"}, Words{"--map", "x", s / "m.png"},
                              Words{"--plot", "plot.jpg"}, Words{"--estimator", "guess"}, Words{"--filter", "on"},
-                             Words{"--samples", "65"}, Words{"--albedo", "own"}}) {
+                             Words{"--samples", "65"}, Words{"--layers", "3"}, Words{"--peer", "alchemy"}, Words{"--peer-steps", "17"}, Words{"--albedo", "own"}}) {
     INFO(words[0] << " " << words[1]);
     const Finished wrong = pareto(s, words);
     CHECK(wrong.code == 2);

@@ -30,25 +30,6 @@ AmbientSettings settingsOf(uint32_t seed) {
   return s;
 }
 
-raster::GBuffer hostileGBuffer(uint32_t seed) {
-  Random random(seed);
-  const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
-  const float odd[] = {0, -0.f, inf, -inf, nan, 1e30f, 1e-40f, -1, 3e38f};
-  raster::GBuffer g(random.integer(1, 70), random.integer(1, 30), kAllLayers);
-  for (int y = 0; y < g.height; ++y)
-    for (int x = 0; x < g.width; ++x) {
-      auto value = [&](float lo, float hi) { return random.integer(0, 9) ? random.real(lo, hi) : odd[random.integer(0, 8)]; };
-      g.depth.at(x, y) = random.integer(0, 3) ? value(1, 3) : inf;
-      g.depth2.at(x, y) = random.integer(0, 3) ? value(1, 4) : inf;
-      for (int c = 0; c < 3; ++c) {
-        g.normal[c].at(x, y) = value(-1, 1);
-        g.albedo[c].at(x, y) = random.real(0, 1);
-        g.emissive[c].at(x, y) = value(0, 2);
-      }
-    }
-  return g;
-}
-
 }  // namespace
 
 TEST_CASE("post: every pass equals its scalar twin on rendered scenes") {

@@ -29,6 +29,18 @@ double cornerObscurance(Membership m, double h) {
   return 1 - blocked;
 }
 
+// The mean of min(d / R, 1)^power over the half sphere there, evenly, by the midpoint rule.
+double cornerEvenly(double h, int power) {
+  double sum = 0;
+  const int n = 200;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const double up = (i + 0.5) / n, towards = std::sqrt(1 - up * up) * std::cos(2 * kPi * (j + 0.5) / n);
+      sum += towards > 0 ? std::pow(std::min(h / towards, 1.0), power) : 1;
+    }
+  return sum / (n * n);
+}
+
 // The sphere of radius 1/2 less the cap behind the wall.
 double cornerSphere(double h) {
   const double cap = std::max(0.0, 0.5 - h);
@@ -94,7 +106,7 @@ TEST_CASE("truth: 2^k points of a scramble have one in each box of every shape")
     }
 }
 
-TEST_CASE("truth: a corner of two planes has the closed forms' O and tangent sphere, and errs as it says") {
+TEST_CASE("truth: a corner of two planes has the closed forms' O, tangent sphere and half spheres, and errs as it says") {
   TracedScene t(40, 30, 128);
   engine::Mesh& m = t.addMesh();
   TracedScene::addQuad(m, {0, 0, -4}, {0, 0, 4}, {4, 0, 4}, {4, 0, -4});  // floor
@@ -108,6 +120,8 @@ TEST_CASE("truth: a corner of two planes has the closed forms' O and tangent sph
   for (int k = 0; k < 4; ++k)
     checkAgainst(t, kObscurances[k], 1e-3, [&](int x, int y) { return cornerObscurance(Membership(k), distance(x, y)); });
   checkAgainst(t, TruthQuantity::TangentSphere, 1e-3, [&](int x, int y) { return cornerSphere(distance(x, y)); });
+  checkAgainst(t, TruthQuantity::Ball, 1e-3, [&](int x, int y) { return cornerEvenly(distance(x, y), 3); });
+  checkAgainst(t, TruthQuantity::Horizon, 1e-3, [&](int x, int y) { return cornerEvenly(distance(x, y), 2); });
 }
 
 TEST_CASE("truth: from the very edge of a corner no ray slips through the other side") {
