@@ -119,7 +119,7 @@ TEST_CASE("downsample: equal sub-pixels give their own bits again, whatever the 
   }
 }
 
-TEST_CASE("downsample: the nearest sub-pixel is the first of the smallest depth; empty and NaN are never nearer") {
+TEST_CASE("downsample: the nearest sub-pixel is the first of the smallest depth, empty and NaN are never nearer") {
   const float z[2][10] = {{3, 2, 5, 5, kInfinity, kInfinity, kNan, 9, kInfinity, 7},
                           {2, 1, 5, 4, kInfinity, kInfinity, kNan, 8, 7, 7}};
   const Ids two = nearestOf(planeOf(10, 2, [&](int x, int y) { return z[y][x]; }), 2);

@@ -56,7 +56,7 @@ TEST_CASE("pareto: an even error has itself as RMSE, bias, percentile and maximu
   CHECK((map.row<uint8_t>(3)[3 * 30] == 0 && map.row<uint8_t>(3)[3 * 30 + 2] == 0));                         // not seen
 }
 
-TEST_CASE("pareto: equal images have no error; one wrong pixel in a hundred is in the maximum and not in the percentile") {
+TEST_CASE("pareto: equal images have no error, one wrong pixel in a hundred is in the maximum and not in the percentile") {
   raster::Parallel parallel(1);
   const auto wave = [](int x, int y) { return 0.5f + 0.4f * float(std::sin(x * 0.7 + y * y * 0.1)); };
   const auto truth = planeOf<float>(20, 15, wave);
@@ -72,7 +72,7 @@ TEST_CASE("pareto: equal images have no error; one wrong pixel in a hundred is i
   CHECK((other.ssim < 0.999 && other.ssim > 0.5));
 }
 
-TEST_CASE("pareto: every combination is a row with all its figures; rays come nearer to the truth by their number") {
+TEST_CASE("pareto: every combination is a row with all its figures, rays come nearer to the truth by their number") {
   const SceneFolder s;
   const Finished f = pareto(s, {"--json", "--csv", s / "rows.csv", "--plot", s / "plot.gp", "--map", "3", s / "map.png"});
   INFO(f.err);
@@ -128,7 +128,7 @@ TEST_CASE("pareto: layers, the silhouettes' bound and the steps of horizons are 
   CHECK((rows[8]["steps"] == 1 && rows[10]["steps"] == 2 && rows[12]["steps"] == 4));
 }
 
-TEST_CASE("pareto: the table has a line for each row; several scenes have a table each; nonsense ends with exit code 2") {
+TEST_CASE("pareto: the table has a line for each row, several scenes have a table each, nonsense ends with exit code 2") {
   const SceneFolder s;
   const std::vector<std::string> few = {"--estimator", "sobol", "--filter", "plane", "--quantity", "O,W-own", s.scene};
   const Finished f = pareto(s, few);

@@ -54,7 +54,7 @@ const glm::vec3 kSix[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {0, 1, 1},
 
 }  // namespace
 
-TEST_CASE("ambient light: of a group's instances, its own; of others, the frame's") {
+TEST_CASE("ambient light: of a group's instances, its own, of others, the frame's") {
   const std::vector<glm::vec3> table{{1, 2, 3}, {4, 5, 6}};
   AmbientLight light(glm::vec3(0.5f));
   light.instances = table;

@@ -101,7 +101,7 @@ TEST_CASE("truth: the program keeps a truth by its content, traces it again when
   CHECK(first["cached"] == false);
   CHECK(first["trace_ms"] > 0);
   CHECK(first["pixels_seen"] > 100);
-  REQUIRE(first["planes"].size() == 6);
+  REQUIRE(first["planes"].size() == 8);
   for (const Json& plane : first["planes"]) {
     CHECK((plane["mean"] > 0.3 && plane["mean"] <= 1));
     CHECK((plane["standard_error_rms"] > 0 && plane["standard_error_rms"] < 0.2));
@@ -164,6 +164,6 @@ TEST_CASE("truth: a surface that a height map would displace is flat, in the fra
     return printed({scene, "--size", "20x20", "--rays", "16", "--no-cache", "--radius", "0.5", "--eye", "0.3,0.2,2", "--target", "0.3,0.3,0"})["planes"];
   };
   const Json flat = planesOf(false);
-  CHECK(flat.size() == 6);
+  CHECK(flat.size() == 8);
   CHECK(planesOf(true) == flat);
 }

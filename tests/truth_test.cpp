@@ -259,7 +259,7 @@ TEST_CASE("truth: what a mirrored instance shows is what its mirror image is, an
       }
 }
 
-TEST_CASE("truth: light that is reflected has the colour of texture, vertices and factor; holes of a mask let rays through") {
+TEST_CASE("truth: light that is reflected has the colour of texture, vertices and factor, holes of a mask let rays through") {
   const auto texels = std::make_shared<std::vector<uint32_t>>(16);
   const auto traced = [&](uint32_t texel, raster::AlphaMode mode, TracedScene& t) {
     std::fill(texels->begin(), texels->end(), texel);
