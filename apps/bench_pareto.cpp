@@ -5,6 +5,7 @@
 
 #include "obscura/apps/bench_frame.h"
 #include "obscura/apps/bench_measure.h"
+#include "obscura/apps/gnuplot.h"
 #include "obscura/apps/ray_estimator.h"
 #include "obscura/apps/signals.h"
 #include "obscura/engine/digest.h"
@@ -119,10 +120,7 @@ void ParetoBenchmark::addTo(CLI::App& app, int& status) {
   c->add_flag("--json", json, "one JSON object instead of tables")->group(output);
   c->add_option("--csv", csv, "all rows to this file")->type_name("FILE")->group(output);
   c->add_option("--plot", plot, "RMSE over time, by gnuplot: .svg, .png, or .gp for its script")
-      ->check([](const std::string& path) {
-        const std::string ending = path.size() > 3 ? path.substr(path.find_last_of('.') + 1) : "";
-        return ending == "svg" || ending == "png" || ending == "gp" ? std::string() : "\"" + path + "\" is no .svg, .png or .gp";
-      })->type_name("FILE")->group(output);
+      ->check(wrongPlotFile)->type_name("FILE")->group(output);
   c->add_option("--map", map,
                 "PNG of a row's error, of the first scene: white where it is right, red where too bright, blue where too dark, full at 0.25")
       ->expected(2)->type_name("ROW FILE")->group(output);

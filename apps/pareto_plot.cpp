@@ -1,25 +1,14 @@
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
 #include <map>
 
+#include "obscura/apps/gnuplot.h"
 #include "obscura/apps/pareto_report.h"
-#include "obscura/engine/image_file.h"
 
 namespace obscura::apps {
 namespace {
 
 using Points = std::vector<std::pair<double, double>>;
-
-std::string text(const std::string& t) {  // for gnuplot, in double quotes
-  std::string out = "\"";
-  for (const char c : t) out += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c >= ' ' ? c : ' ');
-  return out + "\"";
-}
 
 void addBlock(std::string& script, const std::string& name, const Points& points) {
   script += "$" + name + " << EOD\n";
@@ -51,13 +40,13 @@ void addPanel(std::string& script, const ParetoScene& scene, const std::string& 
   for (const auto& [name, points] : series) {
     addBlock(script, prefix + "s" + std::to_string(k), points);
     plots += (k ? ", \\\n     " : "plot ") + ("$" + prefix + "s" + std::to_string(k)) + " using 1:2 with linespoints lw 1 pt " +
-             std::to_string(4 + k % 11) + " ps 0.8 title " + text(name);
+             std::to_string(4 + k % 11) + " ps 0.8 title " + gnuplotText(name);
     ++k;
   }
   std::sort(front.begin(), front.end());
   addBlock(script, prefix + "front", front);
   const std::string base = scene.file.substr(scene.file.find_last_of('/') + 1);
-  script += "set title " + text(base + ": " + truth + " by ray tracing, " + std::to_string(scene.width) + "x" + std::to_string(scene.height)) +
+  script += "set title " + gnuplotText(base + ": " + truth + " by ray tracing, " + std::to_string(scene.width) + "x" + std::to_string(scene.height)) +
             " noenhanced\n" + plots + ", \\\n     $" + prefix + "front using 1:2 with lines lw 5 lc rgb \"#60000000\" title \"Pareto front\"\n";
 }
 
@@ -76,35 +65,10 @@ std::string scriptOf(const std::string& terminal, const std::vector<ParetoScene>
   return script + "unset multiplot\n";
 }
 
-// gnuplot's standard output on this script; empty if it cannot be run or fails.
-std::vector<uint8_t> plotted(const std::string& script) {
-  std::vector<uint8_t> out;
-  std::error_code none;
-  std::string name = (std::filesystem::temp_directory_path(none) / "obscura-plot-XXXXXX").string();
-  const int file = none ? -1 : mkstemp(name.data());
-  if (file < 0) return out;
-  const bool written = write(file, script.data(), script.size()) == ssize_t(script.size());
-  close(file);
-  if (FILE* pipe = written ? popen(("gnuplot '" + name + "' 2> /dev/null").c_str(), "r") : nullptr) {
-    uint8_t part[65536];
-    while (const size_t n = std::fread(part, 1, sizeof part, pipe)) out.insert(out.end(), part, part + n);
-    const int status = pclose(pipe);
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) out.clear();
-  }
-  unlink(name.c_str());
-  return out;
-}
-
 }  // namespace
 
 engine::Result<engine::Done> writeParetoPlot(const std::string& path, const std::vector<ParetoScene>& scenes) {
-  const std::string ending = path.substr(path.find_last_of('.') + 1);
-  const std::string script = scriptOf(ending == "png" ? "pngcairo" : "svg", scenes);
-  std::vector<uint8_t> bytes(script.begin(), script.end());
-  if (ending != "gp") bytes = plotted(script);
-  if (bytes.empty())
-    return engine::Error{engine::ErrorCode::CannotWrite, "gnuplot made no plot: is gnuplot-nox installed? FILE.gp is its script", path, ""};
-  return engine::writeFileAtomically(path, {bytes.data(), bytes.size()});
+  return writeGnuplot(path, [&](const std::string& terminal) { return scriptOf(terminal, scenes); });
 }
 
 }  // namespace obscura::apps

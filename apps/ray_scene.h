@@ -27,13 +27,16 @@ struct RayBatch {
   TrianglePoint point(int lane) const { return {instance[lane], triangle[lane], u[lane], v[lane]}; }
 };
 
+// By instance and triangle: 0 where it is not to be there.
+using RayKeep = std::vector<std::vector<uint8_t>>;
+
 // Triangles block from both sides, whether their material is double-sided or not: culling is the camera's business. What
 // an alpha mask cuts out does not block.
 class RayScene {
  public:
-  // threads: of the tree's construction, 0: one per core. The surface must outlive it. Throws std::runtime_error where the
-  // program was built without Embree or it fails, std::bad_alloc.
-  RayScene(const RaySurface& surface, int threads);
+  // threads: of the tree's construction, 0: one per core. keep: null: all. The surface must outlive it. Throws
+  // std::runtime_error where the program was built without Embree or it fails, std::bad_alloc.
+  RayScene(const RaySurface& surface, int threads, const RayKeep* keep = nullptr);
   ~RayScene();
   RayScene(RayScene&&) noexcept;
 

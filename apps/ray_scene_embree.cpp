@@ -38,13 +38,13 @@ struct RayScene::State {
   std::vector<MaskedGeometry> masked;
   double buildMs = 0;
 
-  State(const RaySurface& surface, int threads) {
+  State(const RaySurface& surface, int threads, const RayKeep* keep) {
     device = rtcNewDevice(threads > 0 ? ("threads=" + std::to_string(threads)).c_str() : nullptr);
     check();
     scene = rtcNewScene(device);
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);  // watertight: no ray slips through a shared edge
     masked.reserve(surface.instances());             // its elements must not move
-    for (size_t i = 0; i < surface.instances(); ++i) add(surface, uint32_t(i));
+    for (size_t i = 0; i < surface.instances(); ++i) add(surface, uint32_t(i), keep ? &(*keep)[i] : nullptr);
     raster::Stopwatch watch;
     rtcCommitScene(scene);
     buildMs = watch.lap();
@@ -56,7 +56,7 @@ struct RayScene::State {
     if (device) rtcReleaseDevice(device);
   }
 
-  void add(const RaySurface& surface, uint32_t instance) {
+  void add(const RaySurface& surface, uint32_t instance, const std::vector<uint8_t>* keep) {
     const auto positions = surface.positions(instance);
     const auto indices = surface.indices(instance);
     if (positions.empty() || indices.empty()) return;
@@ -70,6 +70,8 @@ struct RayScene::State {
     }
     std::memcpy(vertex, positions.data(), positions.size() * 12);
     std::memcpy(index, indices.data(), indices.size() / 3 * 12);
+    for (size_t t = 0; keep && t < keep->size(); ++t)  // to a point, which no ray meets: the others keep their numbers
+      if (!(*keep)[t]) std::memset(static_cast<uint32_t*>(index) + 3 * t, 0, 12);
     if (surface.masked(instance)) {
       masked.push_back({&surface, instance});
       rtcSetGeometryUserData(geometry, &masked.back());
@@ -87,7 +89,8 @@ struct RayScene::State {
   }
 };
 
-RayScene::RayScene(const RaySurface& surface, int threads) : state_(std::make_unique<State>(surface, threads)) {}
+RayScene::RayScene(const RaySurface& surface, int threads, const RayKeep* keep)
+    : state_(std::make_unique<State>(surface, threads, keep)) {}
 RayScene::~RayScene() = default;
 RayScene::RayScene(RayScene&&) noexcept = default;
 

@@ -7,7 +7,7 @@ namespace obscura::apps {
 
 struct RayScene::State {};
 
-RayScene::RayScene(const RaySurface&, int) {
+RayScene::RayScene(const RaySurface&, int, const RayKeep*) {
   throw std::runtime_error("this program was built without Embree 3, which traces rays: install it and build again");
 }
 RayScene::~RayScene() = default;
