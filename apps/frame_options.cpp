@@ -369,7 +369,8 @@ engine::Result<ResolvedFrame> FrameOptions::resolve(const engine::Scene& in) con
   out.frame.tone = tone;
   if (!environment.file.empty()) {
     engine::Result<engine::Environment> read =
-        engine::readEnvironment(environment.file, environment.projection, environment.background, raster.threads);
+        engine::readEnvironment(environment.file, environment.projection,
+                                environment.background ? engine::EnvironmentParts::Background : engine::EnvironmentParts::Light, raster.threads);
     if (!read) return read.error();
     out.frame.environment = std::make_shared<const engine::Environment>(std::move(*read));
     out.frame.environmentRotation = environment.rotation;

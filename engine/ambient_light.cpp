@@ -37,9 +37,8 @@ glm::dmat3 viewFromEnvironment(const raster::Camera& camera, double degrees) {
 }
 
 post::EnvironmentView environmentViewOf(const FrameSettings& s) {
-  const EnvironmentMap& cube = s.environment->cube;
   const glm::dmat3 mapFromView = glm::transpose(viewFromEnvironment(s.camera, s.environmentRotation));
-  return {{cube.projector().width, cube.texels()}, glm::mat3(mapFromView), float(s.environmentIntensity)};
+  return {s.environment->cubes.view(), glm::mat3(mapFromView), float(s.environmentIntensity)};
 }
 
 bool hasAmbientGroups(const Scene& scene) {

@@ -20,7 +20,7 @@ std::array<glm::dvec3, 6> cubeDirections();
 // view space: a rotation, for cameras whose view is one but for a scale.
 glm::dmat3 viewFromEnvironment(const raster::Camera& camera, double degrees);
 
-// What the environment's cube is to the pixels of a frame. It must be there.
+// What the environment's cubes are to the pixels of a frame. They must be there.
 post::EnvironmentView environmentViewOf(const FrameSettings& settings);
 
 // The table that the result may point to is kept in `table`. Throws std::invalid_argument if an instance's light is below 0

@@ -1,5 +1,5 @@
 // In:  an environment map's file.
-// Out: what frames are lit by, its diffuse light, and what is seen behind the scene.
+// Out: what frames are lit by: its diffuse light, what is reflected, and what is seen behind the scene.
 #pragma once
 
 #include <string>
@@ -7,20 +7,26 @@
 
 #include "obscura/engine/environment_projection.h"
 #include "obscura/engine/irradiance.h"
+#include "obscura/engine/prefiltered_environment.h"
 #include "obscura/engine/result.h"
 
 namespace obscura::engine {
 
 constexpr double kMostIntensity = 1e6, kMostRotation = 1e6;
 
+// Each with what is before it.
+enum class EnvironmentParts : uint8_t { Light, Background, Reflections };
+
 struct Environment {
   Harmonics harmonics{};
-  EnvironmentMap cube;                // to look into; without texels unless asked for
+  PrefilteredEnvironment cubes;       // nothing, the mirror for the background, or all that reflections need
   std::vector<std::string> warnings;  // one line each
 };
 
-// The cube has texels of about the map's size in the middle of its faces, at most 4096 a side. threads: 0: one per core;
-// changes no bit. BadInput: no such map.
-Result<Environment> readEnvironment(const std::string& path, EnvironmentProjection projection, bool cube, int threads);
+// The mirror has texels of about the map's size in the middle of its faces, at most 4096 a side. Throws std::bad_alloc.
+Environment environmentOf(const EnvironmentMap& map, EnvironmentParts parts, raster::Parallel& parallel);
+
+// That of a map in a file. threads: 0: one per core; changes no bit. BadInput: no such map.
+Result<Environment> readEnvironment(const std::string& path, EnvironmentProjection projection, EnvironmentParts parts, int threads);
 
 }  // namespace obscura::engine

@@ -79,7 +79,7 @@ const char* wrongSetting(const FrameSettings& s) {
   if (!(t.filterThreshold > 0)) return "the filter threshold must be positive";
   if (!(s.environmentIntensity >= 0 && s.environmentIntensity <= kMostIntensity)) return "the environment's intensity must be 0 to 10^6";
   if (!(std::fabs(s.environmentRotation) <= kMostRotation)) return "the environment's rotation must be -10^6 to 10^6 degrees";
-  if (s.environmentBackground && !(s.environment && !s.environment->cube.texels().empty())) return "an environment as background needs one with a cube";
+  if (s.environmentBackground && !(s.environment && !s.environment->cubes.empty())) return "an environment as background needs one with a cube";
   if (!(s.tone.exposure >= 0 && s.tone.exposure <= kMostExposure)) return "the exposure must be a factor of 0 to 2^64";
   const auto isColor = [](const glm::vec3& v) {
     return v.x >= 0 && v.y >= 0 && v.z >= 0 && std::max({v.x, v.y, v.z}) < 1e30f;

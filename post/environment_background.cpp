@@ -25,6 +25,7 @@ void EnvironmentBackground(const BackgroundInput& in, int y0, int y1, LinearColo
   const Projector& p = in.projector;
   const VF infinity = hn::Set(d, std::numeric_limits<float>::infinity()), half = hn::Set(d, 0.5f), zero = hn::Zero(d);
   const VF intensity = hn::Set(d, in.environment.intensity);
+  const EnvironmentCube cube = in.environment.chain.mirror();
   for (int y = y0; y < y1; ++y) {
     const float yPx = float(p.yFirst + y) + 0.5f;
     const VF yView = p.perspective ? hn::Set(d, (yPx - p.yCenter) * p.yInverse) : zero;
@@ -33,7 +34,7 @@ void EnvironmentBackground(const BackgroundInput& in, int y0, int y1, LinearColo
       if (hn::AllTrue(d, seen)) continue;
       const VF xPx = hn::Add(hn::ConvertTo(d, hn::Iota(di, p.xFirst + x)), half);
       const VF xView = p.perspective ? hn::Mul(hn::Sub(xPx, hn::Set(d, p.xCenter)), hn::Set(d, p.xInverse)) : zero;
-      const V3 radiance = cubeLookUp(in.environment.cube, turned(in.environment.mapFromView, {xView, yView, hn::Set(d, -1.0f)}));
+      const V3 radiance = cubeLookUp(cube, turned(in.environment.mapFromView, {xView, yView, hn::Set(d, -1.0f)}));
       const VF channels[3] = {radiance.x, radiance.y, radiance.z};
       for (int c = 0; c < 3; ++c) {
         float* to = out.rgb[c].row(y) + x;

@@ -20,9 +20,25 @@ struct EnvironmentCube {
   raster::Span<const glm::vec3> texels;  // 6 x (size + 2) x (size + 2): linear radiance, >= 0 and finite
 };
 
+// What surfaces reflect of an environment by their roughness: level k is for the roughness k / (kRoughnessLevels - 1), 0 is
+// the mirror, and is also what is seen behind the scene.
+constexpr int kRoughnessLevels = 9;
+struct EnvironmentChain {
+  int levels = 0;                        // 1: the mirror alone, or kRoughnessLevels
+  int sizes[kRoughnessLevels] = {};      // texels a side, as of an EnvironmentCube
+  raster::Span<const glm::vec3> texels;  // of all levels, one after the other; less than 2^31 / 3
+
+  int first(int level) const {
+    int texel = 0;
+    for (int k = 0; k < level; ++k) texel += 6 * (sizes[k] + 2) * (sizes[k] + 2);
+    return texel;
+  }
+  EnvironmentCube mirror() const { return {sizes[0], texels}; }
+};
+
 // How a frame sees it.
 struct EnvironmentView {
-  EnvironmentCube cube;
+  EnvironmentChain chain;
   glm::mat3 mapFromView{1};  // from camera space (x right, y up, z towards the eye) to directions of the map
   float intensity = 1;       // a factor on the radiance
 };

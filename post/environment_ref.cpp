@@ -43,7 +43,7 @@ void environmentBackgroundRef(const BackgroundInput& in, int y0, int y1, LinearC
       }
       glm::vec3 d;
       for (int k = 0; k < 3; ++k) d[k] = m[0][k] * view.x + m[1][k] * view.y + m[2][k] * view.z;
-      const glm::vec3 radiance = lookUp(in.environment.cube, d);
+      const glm::vec3 radiance = lookUp(in.environment.chain.mirror(), d);
       for (int c = 0; c < 3; ++c) out.rgb[c].at(x, y) = radiance[c] * in.environment.intensity;
     }
 }

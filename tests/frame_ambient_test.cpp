@@ -74,7 +74,7 @@ std::shared_ptr<const engine::Environment> lightFrom(const glm::dvec3& to) {
   map.fillBorders(parallel);
   auto out = std::make_shared<engine::Environment>();
   out->harmonics = engine::harmonicsOf(map, parallel);
-  out->cube = convertEnvironment(map, {engine::EnvironmentProjection::Cube, 12, 12}, parallel);
+  out->cubes = mirrorOf(convertEnvironment(map, {engine::EnvironmentProjection::Cube, 12, 12}, parallel));
   return out;
 }
 

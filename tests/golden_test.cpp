@@ -132,7 +132,7 @@ TEST_CASE("golden: the demo scene in the light of an environment, before it, dis
   map.fillBorders(parallel);
   auto environment = std::make_shared<engine::Environment>();
   environment->harmonics = engine::harmonicsOf(map, parallel);
-  environment->cube = convertEnvironment(map, {engine::EnvironmentProjection::Cube, 48, 48}, parallel);
+  environment->cubes = mirrorOf(convertEnvironment(map, {engine::EnvironmentProjection::Cube, 48, 48}, parallel));
   s.environment = environment;
   s.environmentRotation = 30;
   s.environmentBackground = true;

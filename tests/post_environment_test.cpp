@@ -53,7 +53,7 @@ TEST_CASE("environment background: every empty pixel shows its direction, drawn 
       for (int x = 0; x < width; ++x) g.depth.at(x, y) = random.integer(0, 4) ? kInf : random.integer(0, 1) ? 3 : kNaN;
     const glm::mat3 turn(glm::dmat3(raster::lookAt({0, 0, 0}, glm::dvec3(random.vector(-1, 1)), {0.1, 1, 0})));
     post::BackgroundInput in{&g, post::makeProjector(camera, 200, 100, raster::Window{random.integer(-20, 90), random.integer(-9, 50), width, height}), {}};
-    in.environment = {{40, texels}, turn, 0.5f};
+    in.environment = {{1, {40}, texels}, turn, 0.5f};
     post::LinearColor expected = filled(width, height, -7);
     environmentBackgroundRef(in, 0, height, expected);
     for (raster::Target target : raster::supportedTargets()) {
