@@ -6,6 +6,7 @@
 #include "obscura/apps/demo_random.h"
 #include "obscura/apps/demo_shapes.h"
 #include "obscura/apps/demo_tree.h"
+#include "obscura/apps/glb_builder.h"
 #include "obscura/raster/exact_math.h"
 
 namespace obscura::apps {
@@ -14,46 +15,6 @@ namespace {
 using glm::dvec3;
 
 constexpr double kTau = 6.283185307179586;
-
-class Builder {
- public:
-  GlbScene scene;
-
-  int addMaterial(const char* name, dvec3 color, int texture = -1) {
-    GlbMaterial material;
-    material.name = name;
-    material.baseColor = color;
-    material.texture = texture;
-    scene.materials.push_back(material);
-    return int(scene.materials.size()) - 1;
-  }
-
-  int addTexture(GlbTexture texture) {
-    scene.textures.push_back(std::move(texture));
-    return int(scene.textures.size()) - 1;
-  }
-
-  int addMesh(GlbMesh mesh, int material) {
-    mesh.material = material;
-    mesh.name += " " + std::to_string(scene.meshes.size());
-    scene.meshes.push_back(std::move(mesh));
-    return int(scene.meshes.size()) - 1;
-  }
-
-  int addNode(GlbNode node, int parent = -1) {
-    scene.nodes.push_back(std::move(node));
-    const int index = int(scene.nodes.size()) - 1;
-    (parent < 0 ? scene.roots : scene.nodes[size_t(parent)].children).push_back(index);
-    return index;
-  }
-
-  int addGroup(const char* name, int mesh = -1) {
-    GlbNode node;
-    node.name = name;
-    node.mesh = mesh;
-    return addNode(node);
-  }
-};
 
 std::array<double, 4> turnAbout(dvec3 axis, double angle) {  // unit axis
   const double s = raster::exactSin(angle / 2);
@@ -67,7 +28,7 @@ std::array<double, 4> standing(Random& random, double tilt) {
   return turnAbout(axis, random.in(0, kTau));
 }
 
-void addStone(Builder& b, int group, int mesh, double x, double z, dvec3 scale, double sunk, Random& random) {
+void addStone(GlbBuilder& b, int group, int mesh, double x, double z, dvec3 scale, double sunk, Random& random) {
   GlbNode node;
   node.name = "stone";
   node.mesh = mesh;
@@ -77,7 +38,7 @@ void addStone(Builder& b, int group, int mesh, double x, double z, dvec3 scale, 
   b.addNode(node, group);
 }
 
-void addStones(Builder& b) {
+void addStones(GlbBuilder& b) {
   const int greys[] = {b.addMaterial("granite", {0.40, 0.385, 0.365}), b.addMaterial("slate", {0.25, 0.27, 0.30}),
                        b.addMaterial("limestone", {0.50, 0.455, 0.38})};
   std::vector<int> large, small;
@@ -106,7 +67,7 @@ void addStones(Builder& b) {
   }
 }
 
-void addTree(Builder& b) {
+void addTree(GlbBuilder& b) {
   const int barkTexture = b.addTexture(makeBarkTexture()), leafTexture = b.addTexture(makeLeafTexture());
   const int bark = b.addMaterial("bark", {0.52, 0.38, 0.27}, barkTexture);
   const int greens[] = {b.addMaterial("leaf, dark", {0.17, 0.32, 0.075}, leafTexture),
@@ -134,7 +95,7 @@ void addTree(Builder& b) {
   }
 }
 
-void addGrass(Builder& b) {
+void addGrass(GlbBuilder& b) {
   const int material = b.addMaterial("grass", {0.30, 0.42, 0.13});
   b.scene.materials[size_t(material)].doubleSided = true;
   const int tufts[] = {b.addMesh(makeGrassTuft(13, 500), material), b.addMesh(makeGrassTuft(17, 501), material)};
@@ -158,7 +119,7 @@ void addGrass(Builder& b) {
 }  // namespace
 
 GlbScene makeDemoScene() {
-  Builder b;
+  GlbBuilder b;
   const int soil = b.addMaterial("ground", dvec3(1), b.addTexture(makeSoilTexture()));
   b.addGroup("ground", b.addMesh(makeGround(), soil));
   addTree(b);

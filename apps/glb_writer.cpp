@@ -113,6 +113,9 @@ Json materialJson(const GlbMaterial& material) {
     json["alphaMode"] = "MASK";
     json["alphaCutoff"] = material.alphaCutoff;
   }
+  const double strength = std::max({1.0, material.emissive.x, material.emissive.y, material.emissive.z});
+  if (material.emissive != glm::dvec3(0)) json["emissiveFactor"] = array(material.emissive / strength);
+  if (strength > 1) json["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", strength}};
   if (material.doubleSided) json["doubleSided"] = true;
   if (!material.extras.empty()) json["extras"] = Json::parse(material.extras);
   return json;
@@ -216,6 +219,8 @@ std::vector<uint8_t> glbFromScene(const GlbScene& scene) {
 
   Json json;
   json["asset"] = {{"version", "2.0"}, {"generator", "obscura-scene"}};
+  const auto isBright = [](const Json& m) { return m.contains("extensions"); };
+  if (std::any_of(materials.begin(), materials.end(), isBright)) json["extensionsUsed"] = {"KHR_materials_emissive_strength"};
   json["scene"] = 0;
   json["scenes"] = Json::array({{{"nodes", roots}}});
   json["nodes"] = nodes;

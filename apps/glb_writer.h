@@ -21,6 +21,7 @@ struct GlbTexture {  // becomes an embedded PNG, repeated in both directions, wi
 struct GlbMaterial {
   std::string name;
   glm::dvec3 baseColor{1};  // linear
+  glm::dvec3 emissive{0};   // linear; above 1 with KHR_materials_emissive_strength
   int texture = -1;         // into GlbScene::textures
   double alphaCutoff = 0;   // above 0: alphaMode MASK
   bool doubleSided = false;

@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "obscura/apps/envmap_command.h"
+#include "obscura/apps/figures_command.h"
 #include "obscura/apps/render_command.h"
 #include "obscura/apps/report.h"
 
@@ -51,12 +52,16 @@ int main(int argc, char** argv) {
   render.addTo(app);
   obscura::apps::EnvmapCommand envmap;
   envmap.addTo(app);
+  obscura::apps::FiguresCommand figures;
+  figures.addTo(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
-    return obscura::apps::fail(
-        {obscura::engine::ErrorCode::Usage, std::string(e.what()) + " (see obscura " + (app.got_subcommand("envmap") ? "envmap" : "render") + " --help)", "", ""});
+    const auto asked = app.get_subcommands();
+    const std::string command = asked.empty() ? "render" : asked.front()->get_name();
+    return obscura::apps::fail({obscura::engine::ErrorCode::Usage, std::string(e.what()) + " (see obscura " + command + " --help)", "", ""});
   }
-  return app.got_subcommand("envmap") ? runCommand(envmap) : runCommand(render);
+  if (app.got_subcommand("envmap")) return runCommand(envmap);
+  return app.got_subcommand("figures") ? runCommand(figures) : runCommand(render);
 }

@@ -92,4 +92,10 @@ std::string shown(double v) {
 
 std::string shown(const glm::vec3& v) { return shown(v.x) + "," + shown(v.y) + "," + shown(v.z); }
 
+std::string escapedXml(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c);
+  return out;
+}
+
 }  // namespace obscura::apps

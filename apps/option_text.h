@@ -42,4 +42,7 @@ std::optional<raster::Window> cropOf(std::string_view text);
 std::string shown(double v);
 std::string shown(const glm::vec3& v);  // with commas between
 
+// As text or as a quoted attribute of XML and HTML.
+std::string escapedXml(const std::string& text);
+
 }  // namespace obscura::apps

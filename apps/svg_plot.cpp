@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "obscura/apps/option_text.h"
+
 namespace obscura::apps {
 namespace {
 
@@ -12,8 +14,9 @@ constexpr double kLeft = 64, kRight = 16, kTop = 34, kBottom = 50;  // around a 
 constexpr const char* kColors[] = {"#0072b2", "#d55e00", "#009e73",
                                    "#cc79a7"};  // Okabe and Ito: for the colour-blind, too
 
-bool usable(const std::pair<double, double>& p) {
-  return p.first > 0 && p.second > 0 && std::isfinite(p.first) && std::isfinite(p.second);
+bool usable(const std::pair<double, double>& p, bool logarithmic) {
+  const auto fits = [&](double v) { return logarithmic ? v > 0 && std::isfinite(v) : v >= 0 && v <= 100; };
+  return fits(p.first) && fits(p.second);
 }
 
 std::string number(double v) {
@@ -30,21 +33,22 @@ std::string tickLabel(double v) {
   return text;
 }
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
-  return out;
-}
-
 std::string label(double x, double y, const std::string& text, const char* more) {
-  return "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\" " + more + ">" + escaped(text) + "</text>\n";
+  return "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\" " + more + ">" + escapedXml(text) + "</text>\n";
 }
 
-// Ticks at powers of ten; between them at 2 and 5, too, where the range is short.
+// Logarithmic: ticks at powers of ten; between them at 2 and 5, too, where the range is short. Else quarters of the power of
+// ten below the largest value, or that itself where there would be many.
 struct Axis {
   std::vector<double> ticks;
+  bool logarithmic;
 
-  Axis(double least, double most) {
+  Axis(double least, double most, bool isLogarithmic) : logarithmic(isLogarithmic) {
+    if (!logarithmic) {
+      const double ten = std::pow(10.0, std::floor(std::log10(most))), step = most < 3 * ten ? ten / 4 : ten;
+      for (int k = 0; ticks.empty() || ticks.back() < most; ++k) ticks.push_back(k * step);
+      return;
+    }
     const int first = int(std::floor(std::log10(least))), last = int(std::ceil(std::log10(most)));
     const bool fine = most < 100 * least;
     for (int k = first; k <= last; ++k)
@@ -54,21 +58,23 @@ struct Axis {
     while (ticks.size() > 2 && ticks[1] <= least * 1.05) ticks.erase(ticks.begin());
     while (ticks.size() > 2 && ticks[ticks.size() - 2] >= most * 0.95) ticks.pop_back();
   }
-  double at(double v) const { return std::log(v / ticks.front()) / std::log(ticks.back() / ticks.front()); }
+  double at(double v) const {
+    return logarithmic ? std::log(v / ticks.front()) / std::log(ticks.back() / ticks.front()) : v / ticks.back();
+  }
 };
 
 std::string panelOf(const PlotPanel& panel) {
   double lo[2] = {1e300, 1e300}, hi[2] = {0, 0};
   for (const PlotSeries& s : panel.series)
     for (const auto& p : s.points) {
-      if (!usable(p)) continue;
+      if (!usable(p, panel.logarithmic)) continue;
       lo[0] = std::min(lo[0], p.first), hi[0] = std::max(hi[0], p.first);
       lo[1] = std::min(lo[1], p.second), hi[1] = std::max(hi[1], p.second);
     }
   std::string out = label(kPanelWidth / 2, 20, panel.title, "text-anchor=\"middle\" font-weight=\"bold\"");
   if (hi[0] == 0)
     return out + label(kPanelWidth / 2, kPanelHeight / 2, "nothing was measured", "text-anchor=\"middle\"");
-  const Axis xAxis(lo[0], hi[0]), yAxis(lo[1], hi[1]);
+  const Axis xAxis(lo[0], hi[0], panel.logarithmic), yAxis(lo[1], hi[1], panel.logarithmic);
   const double width = kPanelWidth - kLeft - kRight, height = kPanelHeight - kTop - kBottom;
   const auto xOf = [&](double v) { return kLeft + width * xAxis.at(v); };
   const auto yOf = [&](double v) { return kTop + height * (1 - yAxis.at(v)); };
@@ -96,10 +102,10 @@ std::string panelOf(const PlotPanel& panel) {
     const std::string color = kColors[k % std::size(kColors)];
     std::string path, dots;
     for (const auto& p : s.points) {
-      if (!usable(p)) continue;
+      if (!usable(p, panel.logarithmic)) continue;
       const std::string x = number(xOf(p.first)), y = number(yOf(p.second));
       path += (path.empty() ? "M" : "L") + x + " " + y;
-      if (!s.dashed) dots += "<circle cx=\"" + x + "\" cy=\"" + y + "\" r=\"3\" fill=\"" + color + "\"/>";
+      if (!s.dashed && panel.logarithmic) dots += "<circle cx=\"" + x + "\" cy=\"" + y + "\" r=\"3\" fill=\"" + color + "\"/>";
     }
     const std::string stroke =
         "fill=\"none\" stroke-width=\"2\" stroke=\"" + color + "\"" + (s.dashed ? " stroke-dasharray=\"5 4\"" : "");

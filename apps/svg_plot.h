@@ -9,14 +9,14 @@ namespace obscura::apps {
 
 struct PlotSeries {
   std::string name;
-  std::vector<std::pair<double, double>> points;  // x, y; those that are not positive and finite are left out
+  std::vector<std::pair<double, double>> points;  // x, y; those that the axes cannot show are left out
   bool dashed = false;
 };
 
-// Both axes are logarithmic.
 struct PlotPanel {
   std::string title, xLabel, yLabel;
   std::vector<PlotSeries> series;
+  bool logarithmic = true;  // both axes, for finite numbers above 0; else from 0 on, for finite ones from 0 to 100
 };
 
 // One panel beside another, `columns` in a row.

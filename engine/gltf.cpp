@@ -150,11 +150,15 @@ class Assembly {
 }  // namespace
 }  // namespace gltf
 
-Result<Scene> sceneFromGltf(const std::string& path, const LoadOptions& options) {
+namespace {
+
+// source: a path, or the bytes themselves; `name` is the file of the error messages.
+template <class Source>
+Result<Scene> sceneFrom(const Source& source, const std::string& name, const LoadOptions& options) {
   const raster::FloatEnvironment environment;
   Error error;
   try {
-    gltf::Document document(path, options);
+    gltf::Document document(source, options);
     return gltf::Assembly(document).assemble();
   } catch (gltf::Failure& failure) {
     error = std::move(failure.error);
@@ -163,8 +167,16 @@ Result<Scene> sceneFromGltf(const std::string& path, const LoadOptions& options)
   } catch (const std::exception& e) {
     error.message = std::string("cannot be loaded: ") + e.what();
   }
-  if (error.file.empty()) error.file = path;
+  if (error.file.empty()) error.file = name;
   return error;
+}
+
+}  // namespace
+
+Result<Scene> sceneFromGltf(const std::string& path, const LoadOptions& options) { return sceneFrom(path, path, options); }
+
+Result<Scene> sceneFromGltf(raster::Span<const uint8_t> file, const std::string& name, const LoadOptions& options) {
+  return sceneFrom(file, name, options);
 }
 
 }  // namespace obscura::engine

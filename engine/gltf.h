@@ -50,4 +50,7 @@ struct LoadOptions {
 // External files must lie in the folder of the .gltf or below it.
 Result<Scene> sceneFromGltf(const std::string& path, const LoadOptions& options = {});
 
+// The same from a file in memory, which may name no other files; `name` is that of the error messages.
+Result<Scene> sceneFromGltf(raster::Span<const uint8_t> file, const std::string& name, const LoadOptions& options = {});
+
 }  // namespace obscura::engine

@@ -131,6 +131,10 @@ std::string firstLine(const std::string& s) { return s.substr(0, s.find('\n')); 
 std::string pointer(const std::string& parent, uint64_t index) { return parent + "/" + std::to_string(index); }
 std::string pointer(const std::string& parent, const std::string& key) { return parent + "/" + key; }
 
+Document::Document(Bytes file, const LoadOptions& loadOptions) : options(loadOptions), parts_(splitContainer(file)) {
+  parse(parts_.json);
+}
+
 Document::Document(const std::string& path, const LoadOptions& loadOptions) : options(loadOptions) {
   const size_t slash = path.find_last_of('/');
   if (slash != std::string::npos) folder_ = path.substr(0, std::max<size_t>(slash, 1));

@@ -42,6 +42,7 @@ struct Source {
 class Document {
  public:
   Document(const std::string& path, const LoadOptions& loadOptions);
+  Document(Bytes file, const LoadOptions& loadOptions);  // which must stay; without a folder, it names no other files
 
   LoadOptions options;
   tinygltf::Model model;  // without buffers and images

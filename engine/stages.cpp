@@ -88,19 +88,21 @@ bool inked(char c, int x, int y) {
   return y < 7 && (x == 0 || x == kGlyphWidth - 1 || y == 0 || y == 6);  // a box
 }
 
-void drawLabel(Image& sheet, const std::string& label, int left, int top, int width, int scale) {
-  for (size_t i = 0; i < label.size() && (int(i) + 1) * kAdvance * scale <= width; ++i)
-    for (int y = 0; y < kGlyphHeight * scale; ++y)
-      for (int x = 0; x < kGlyphWidth * scale; ++x)
-        if (inked(label[i], x / scale, y / scale))
-          std::memset(sheet.row<uint8_t>(top + y) + (left + int(i) * kAdvance * scale + x) * 3, kInk, 3);
-}
-
 bool isPicture(const Image& image) {
   return image.channels == 3 && image.format == Format::U8 && image.width > 0 && image.height > 0;
 }
 
 }  // namespace
+
+void drawText(Image& rgb8, const std::string& text, int left, int top, int scale, uint8_t ink) {
+  for (size_t i = 0; i < text.size(); ++i)
+    for (int y = std::max(0, -top); y < kGlyphHeight * scale && top + y < rgb8.height; ++y)
+      for (int x = 0; x < kGlyphWidth * scale; ++x) {
+        const int column = left + int(i) * kAdvance * scale + x;
+        if (column < 0 || column >= rgb8.width || !inked(text[i], x / scale, y / scale)) continue;
+        std::memset(rgb8.row<uint8_t>(top + y) + column * 3, ink, 3);
+      }
+}
 
 SheetLayout sheetLayout(const std::vector<Labelled>& tiles, int columns) {
   SheetLayout s;
@@ -132,7 +134,8 @@ Image contactSheet(const std::vector<Labelled>& tiles, int columns) {
       for (int y = 0; y < from.height; ++y)
         std::memcpy(sheet.row<uint8_t>(top + y) + left * 3, from.row<uint8_t>(y), size_t(from.width) * 3);
     }
-    drawLabel(sheet, tiles[size_t(i)].label, s.x(i), s.y(i) + s.cellHeight + 3 * s.scale, s.cellWidth, s.scale);
+    const std::string shown = tiles[size_t(i)].label.substr(0, size_t(s.cellWidth / (kAdvance * s.scale)));
+    drawText(sheet, shown, s.x(i), s.y(i) + s.cellHeight + 3 * s.scale, s.scale, kInk);
   }
   return sheet;
 }

@@ -17,6 +17,10 @@ struct Labelled {
 // in a strip below; the font grows with the cells. U8 RGB; 0 x 0 without tiles. Throws std::bad_alloc.
 Image contactSheet(const std::vector<Labelled>& tiles, int columns);
 
+// Writes ASCII (other characters are a box) into a U8 RGB image, in grey: characters of 5 x 8 in boxes of 6 x 8, times
+// scale, from this pixel on; what lies outside the image is cut off.
+void drawText(Image& rgb8, const std::string& text, int left, int top, int scale, uint8_t ink);
+
 // Where contactSheet puts things, all in pixels.
 struct SheetLayout {
   int columns = 0, rows = 0;
