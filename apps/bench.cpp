@@ -7,6 +7,7 @@
 #include "obscura/apps/bench_error.h"
 #include "obscura/apps/bench_frame.h"
 #include "obscura/apps/bench_pareto.h"
+#include "obscura/apps/bench_peers.h"
 #include "obscura/apps/bench_raster.h"
 #include "obscura/apps/bench_scaling.h"
 #include "obscura/apps/bench_transfer.h"
@@ -32,6 +33,8 @@ int main(int argc, char** argv) {
   pareto.addTo(app, status);
   obscura::apps::ErrorBenchmark error;
   error.addTo(app, status);
+  obscura::apps::PeersBenchmark peers;
+  peers.addTo(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
