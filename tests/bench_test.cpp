@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <new>
 #include <set>
@@ -17,6 +18,7 @@
 #include "obscura/apps/bench_measure.h"
 #include "obscura/apps/bench_scenes.h"
 #include "obscura/raster/rasterizer.h"
+#include "cli_scene.h"
 #include "obscura/raster/target.h"
 #include "run_program.h"
 
@@ -256,4 +258,25 @@ TEST_CASE("bench: nonsense ends with exit code 2 and a plot that cannot be writt
   const Finished f = runProgram({"scaling", "--most-triangles", "1e3", "--most-pixels", "8x8", "--size", "8x8",
                                  "--seconds", "0.001", "--plot", "/nonexistent/plot.svg"});
   CHECK(f.code == 4);
+}
+
+TEST_CASE("bench: llvmpipe draws the same picture, or its absence is said and ends with exit code 3") {
+#ifndef OBSCURA_SANITIZED  // the driver is not made for sanitizers
+  const obscura::tests::SceneFolder s;
+  const std::vector<std::string> words = {"peers", s.scene, "--size", "64x48", "--frames", "2", "--threads", "2"};
+  const Finished table = runProgram(words);
+  INFO(table.err);
+  if (table.code != 0) {
+    CHECK(table.code == 3);
+    CHECK(table.err.find("no llvmpipe to compare with: ") != table.err.npos);
+    CHECK(table.out.empty());
+    return;
+  }
+  for (const char* line : {"G-buffer", "transfer", "filter, light", "frame", "pictures"}) CHECK(table.out.find(line) != table.out.npos);
+  const Json out = printed(words);
+  REQUIRE(out["stages"].size() == 4);
+  for (const Json& stage : out["stages"]) CHECK((stage["obscura_ms"] > 0 && stage["peer_ms"] > 0 && stage["ratio"] > 0));
+  CHECK(out["difference"]["rms"] < 0.03);  // what a few pixels on edges differ by
+  CHECK(std::fabs(double(out["difference"]["mean"])) < 0.003);
+#endif
 }
