@@ -18,7 +18,8 @@ struct Column {
   double engine::FrameTimings::*value;
 };
 constexpr Column kColumns[] = {
-    {"gbuffer_ms", &engine::FrameTimings::gbuffer}, {"transfer_ms", &engine::FrameTimings::transfer},
+    {"gbuffer_ms", &engine::FrameTimings::gbuffer}, {"shadows_ms", &engine::FrameTimings::shadows},
+    {"direct_ms", &engine::FrameTimings::direct},   {"transfer_ms", &engine::FrameTimings::transfer},
     {"filter_ms", &engine::FrameTimings::filter},   {"light_ms", &engine::FrameTimings::light},
     {"downsample_ms", &engine::FrameTimings::downsample}, {"display_ms", &engine::FrameTimings::display},
     {"frame_ms", &engine::FrameTimings::frame},

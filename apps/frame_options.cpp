@@ -1,7 +1,11 @@
 #include "obscura/apps/frame_options.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "obscura/apps/option_text.h"
 #include "obscura/apps/setting_names.h"
@@ -75,6 +79,16 @@ void addMatrix(CLI::App& app, const std::string& name, std::optional<glm::dmat4>
     value = m;
     return true;
   })->group("View");
+}
+
+engine::SceneLight farLight(const char* name, const glm::dvec3& direction, const glm::vec3& color, bool shadows) {
+  engine::SceneLight light;
+  light.name = name;
+  const double longest = std::max({std::fabs(direction.x), std::fabs(direction.y), std::fabs(direction.z)});
+  light.direction = glm::normalize(direction / longest);
+  light.color = color;
+  light.shadows = shadows;
+  return light;
 }
 
 raster::Target instructionSet(const std::string& text) {
@@ -178,6 +192,38 @@ void addEnvironment(CLI::App& app, FrameOptions& o) {
       ->group(group);
 }
 
+void addLights(CLI::App& app, FrameOptions& o) {
+  const char* group = "Lights";
+  LightOptions& l = o.light;
+  addChoice(app, "--lights", {{"file", true}, {"none", false}}, l.ofFile, "whether the file's lights shine; those below do in any case")->group(group);
+  CLI::Option* sun = addRead(app, "--sun", "X,Y,Z", "a light from far away, with shadows: the direction to it [none]",
+                             [&l](const std::string& text) {
+                               l.sun = vectorOf(text);
+                               const double longest = l.sun ? std::max({std::fabs(l.sun->x), std::fabs(l.sun->y), std::fabs(l.sun->z)}) : 0;
+                               return longest > 1e-100 && longest < 1e100;
+                             });
+  sun->group(group);
+  addRead(app, "--sun-light", "COLOR", "its light in lux, R,G,B linear or #RRGGBB; pi makes white as bright as ambient light of 1 [pi,pi,pi]",
+          [&l](const std::string& text) {
+            const std::optional<glm::vec3> color = colorOf(text);
+            if (color) l.sunColor = *color;
+            return color && std::max({color->x, color->y, color->z}) <= engine::kMostLight;
+          })
+      ->needs(sun)
+      ->group(group);
+  addRead(app, "--headlight", "LUX", "a white light that shines where the camera looks, without shadows, up to 10^15 [0]",
+          [&l](const std::string& text) {
+            const std::optional<double> lux = numberOf<double>(text);
+            if (lux) l.headlight = *lux;
+            return lux && *lux >= 0 && *lux <= double(engine::kMostLight);
+          })
+      ->group(group);
+  addChoice(app, "--shadows", {{"on", true}, {"off", false}}, l.shadows, "what stands in the way of these lights casts shadows")->group(group);
+  addInteger(app, "--shadow-size", 16, engine::kMostShadowSize, l.shadowSize,
+             "texels a side of a shadow map [" + std::to_string(l.shadowSize) + "]")
+      ->group(group);
+}
+
 void addDisplay(CLI::App& app, FrameOptions& o) {
   const char* group = "Display (of pictures: PNG and the digest display; the AOV color stays as it is)";
   addRead(app, "--exposure", "STOPS", "brighter by so many powers of two, -64 to 64 [0]",
@@ -264,7 +310,7 @@ void addAmbient(CLI::App& app, FrameOptions& o) {
                               {"radiance", TransferAlbedo::Radiance}},
             o.transfer.albedo,
             "what W takes from what occludes: the pixel's own albedo, that of the occluder, or the radiance that the frame "
-            "holds there (emission and ambient light, reflected once)")
+            "holds there (emission; ambient light and direct lights, reflected once)")
       ->group(group);
   addInteger(app, "--samples", 1, 64, o.transfer.samples,
              "n, rays per pixel [" + std::to_string(o.transfer.samples) + "]")
@@ -332,6 +378,7 @@ void FrameOptions::addTo(CLI::App& app) {
   });
   addView(app, *this);
   addEnvironment(app, *this);
+  addLights(app, *this);
   addDisplay(app, *this);
   addAmbient(app, *this);
   addExecution(app, *this);
@@ -358,9 +405,18 @@ engine::Result<ResolvedFrame> FrameOptions::resolve(const engine::Scene& in) con
   out.frame.ambient = ambient;
   out.frame.ambientLight = ambientLight.value_or(glm::vec3(1));
   out.frame.ambientDirections = ambientDirections;
+  out.frame.sceneLights = light.ofFile;
+  out.frame.shadows = light.shadows;
+  out.frame.shadowSize = light.shadowSize;
+  if (light.sun) out.frame.lights.push_back(farLight("sun", -*light.sun, light.sunColor, true));
+  if (light.headlight > 0)
+    out.frame.lights.push_back(farLight("headlight", -glm::transpose(glm::dmat3(chosen->viewFromWorld))[2], glm::vec3(light.headlight), false));
   if (ambientExtended) {
     raster::Parallel parallel(raster.threads);
-    const auto colors = engine::extendedAmbient(in, ambientLight ? std::optional<glm::dvec3>(*ambientLight) : std::nullopt, parallel);
+    std::vector<engine::SceneLight> lights = light.ofFile ? in.lights : std::vector<engine::SceneLight>();
+    lights.insert(lights.end(), out.frame.lights.begin(), out.frame.lights.end());
+    const engine::BouncedLight direct(in, lights, light.shadows, raster);
+    const auto colors = engine::extendedAmbient(in, ambientLight ? std::optional<glm::dvec3>(*ambientLight) : std::nullopt, parallel, &direct);
     if (!colors) return colors.error();
     out.frame.ambientLight = glm::vec3(1);
     out.frame.ambientDirections = *colors;

@@ -32,6 +32,15 @@ struct EnvironmentOptions {
   bool background = false;
 };
 
+struct LightOptions {
+  bool ofFile = true;
+  std::optional<glm::dvec3> sun;     // direction to it, world space
+  glm::vec3 sunColor{3.14159265f};   // lux
+  double headlight = 0;              // lux
+  bool shadows = true;
+  int shadowSize = engine::FrameSettings().shadowSize;
+};
+
 // The members' initial values are the options' defaults and show up in --help: a program that wants others sets them
 // before addTo(). The object must outlive the parsing.
 struct FrameOptions {
@@ -47,6 +56,7 @@ struct FrameOptions {
   std::optional<std::array<glm::vec3, 6>> ambientDirections;   // as in engine::FrameSettings
   std::vector<std::pair<std::string, glm::vec3>> ambientNodes;  // as in engine::LoadOptions
   EnvironmentOptions environment;
+  LightOptions light;
   post::ToneSettings tone;
   bool displacement = true;
   post::Occlusion ambient = post::Occlusion::Transfer;

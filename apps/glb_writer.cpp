@@ -124,11 +124,19 @@ Json materialJson(const GlbMaterial& material) {
 Json nodeJson(const GlbNode& node) {
   Json json = {{"name", node.name}};
   if (node.mesh >= 0) json["mesh"] = node.mesh;
+  if (node.light >= 0) json["extensions"]["KHR_lights_punctual"]["light"] = node.light;
   if (node.translation != glm::dvec3(0)) json["translation"] = array(node.translation);
   if (node.rotation != std::array<double, 4>{0, 0, 0, 1}) json["rotation"] = node.rotation;
   if (node.scale != glm::dvec3(1)) json["scale"] = array(node.scale);
   if (!node.children.empty()) json["children"] = node.children;
   if (!node.extras.empty()) json["extras"] = Json::parse(node.extras);
+  return json;
+}
+
+Json lightJson(const GlbLight& light) {
+  Json json = {{"name", light.name}, {"type", light.type}, {"color", array(light.color)}, {"intensity", light.intensity}};
+  if (light.range > 0) json["range"] = light.range;
+  if (light.type == "spot") json["spot"] = {{"innerConeAngle", light.innerCone}, {"outerConeAngle", light.outerCone}};
   return json;
 }
 
@@ -231,6 +239,8 @@ std::vector<uint8_t> glbFromScene(const GlbScene& scene) {
                                     {"aspectRatio", scene.camera.aspect},
                                     {"znear", scene.camera.zNear},
                                     {"zfar", scene.camera.zFar}}}}});
+  for (const GlbLight& light : scene.lights) json["extensions"]["KHR_lights_punctual"]["lights"].push_back(lightJson(light));
+  if (!scene.lights.empty()) json["extensionsUsed"] = {"KHR_lights_punctual"};
   json["meshes"] = meshes;
   json["materials"] = materials;
   if (!images.empty()) {

@@ -37,9 +37,16 @@ struct GlbMesh {
   std::vector<uint32_t> indices;
 };
 
+struct GlbLight {  // of KHR_lights_punctual; shines along its node's -z
+  std::string name, type;  // "directional", "point" or "spot"
+  glm::dvec3 color{1};
+  double intensity = 1, range = 0;             // range 0: none
+  double innerCone = 0, outerCone = 0.785398;  // of a spot, radians
+};
+
 struct GlbNode {
   std::string name;
-  int mesh = -1;
+  int mesh = -1, light = -1;
   std::string extras;         // JSON, or empty
   glm::dvec3 translation{0};
   std::array<double, 4> rotation{0, 0, 0, 1};  // unit quaternion x, y, z, w
@@ -57,6 +64,7 @@ struct GlbScene {
   std::vector<GlbTexture> textures;
   std::vector<GlbMaterial> materials;
   std::vector<GlbMesh> meshes;
+  std::vector<GlbLight> lights;
   std::vector<GlbNode> nodes;
   std::vector<int> roots;  // into nodes; the camera becomes one more root
   GlbCamera camera;

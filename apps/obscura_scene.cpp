@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "obscura/apps/demo_lights.h"
 #include "obscura/apps/demo_scene.h"
 #include "obscura/apps/demo_surfaces.h"
 #include "obscura/engine/image_file.h"
@@ -19,7 +20,8 @@ int main(int argc, char** argv) {
     apps::GlbScene (*make)();
   } kScenes[] = {{"demo", "a tree with stones on uneven ground, some 120,000 triangles", apps::makeDemoScene},
                  {"implicit", "implicit surfaces of each kind on a floor of triangles", apps::makeImplicitScene},
-                 {"relief", "a floor that a height map displaces", apps::makeReliefScene}};
+                 {"relief", "a floor that a height map displaces", apps::makeReliefScene},
+                 {"lights", "a courtyard at dusk: a low sun, a lamp and a spot, which cast shadows", apps::makeLightsScene}};
   for (const auto& scene : kScenes)
     app.add_subcommand(scene.name, scene.what)->add_option("-o,--output", output, "the .glb file to write; - is standard output")->required();
   try {

@@ -254,7 +254,7 @@ int RenderCommand::render() {
   run.write = watch.lap();
 
   progress.finish();
-  if (stats_) report.statistics = &frame.statistics, report.transfer = &frame.transferStatistics;
+  if (stats_) report.statistics = &frame.statistics, report.transfer = &frame.transferStatistics, report.lights = &frame.lightStatistics;
   if (timings_) report.frame = &frame.timings, report.run = &run;
   const bool imageOnStdout =
       std::any_of(outputs->begin(), outputs->end(), [](const Output& o) { return o.path == "-"; });

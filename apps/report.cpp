@@ -13,7 +13,7 @@ namespace {
 
 using Entries = std::vector<std::pair<const char*, std::string>>;
 
-Entries statisticsOf(const raster::Statistics& s, const post::TransferStatistics* t) {
+Entries statisticsOf(const raster::Statistics& s, const post::TransferStatistics* t, const engine::LightStatistics* l) {
   const auto n = [](uint64_t v) { return std::to_string(v); };
   Entries e{{"instances", n(s.instances)},
           {"instances_culled", n(s.instancesCulled)},
@@ -37,6 +37,11 @@ Entries statisticsOf(const raster::Statistics& s, const post::TransferStatistics
     e.emplace_back("transfer_pixels_open", n(t->open));
     e.emplace_back("transfer_pixels_sampled", n(t->sampled));
   }
+  if (l) {
+    e.emplace_back("lights", n(l->lights));
+    e.emplace_back("lights_unseen", n(l->unseen));
+    e.emplace_back("shadow_maps", n(l->shadowMaps));
+  }
   return e;
 }
 
@@ -46,7 +51,7 @@ Entries timingsOf(const engine::FrameTimings& f, const RunTimings& r) {
     std::snprintf(text, sizeof text, "%.3f", v);
     return std::string(text);
   };
-  return {{"load_ms", ms(r.load)},     {"environment_ms", ms(r.environment)}, {"gbuffer_ms", ms(f.gbuffer)}, {"transfer_ms", ms(f.transfer)},
+  return {{"load_ms", ms(r.load)},     {"environment_ms", ms(r.environment)}, {"gbuffer_ms", ms(f.gbuffer)}, {"shadows_ms", ms(f.shadows)}, {"direct_ms", ms(f.direct)}, {"transfer_ms", ms(f.transfer)},
           {"filter_ms", ms(f.filter)}, {"light_ms", ms(f.light)},     {"downsample_ms", ms(f.downsample)},
           {"display_ms", ms(f.display)}, {"frame_ms", ms(f.frame)},   {"digest_ms", ms(r.digest)},
           {"encode_ms", ms(r.encode)}, {"write_ms", ms(r.write)}};
@@ -105,7 +110,7 @@ std::string textOf(const Report& report) {
   std::string s;
   for (const std::string& line : report.digests) s += line + "\n";
   Entries entries;
-  if (report.statistics) entries = statisticsOf(*report.statistics, report.transfer);
+  if (report.statistics) entries = statisticsOf(*report.statistics, report.transfer, report.lights);
   if (report.frame && report.run)
     for (auto& entry : timingsOf(*report.frame, *report.run)) entries.push_back(std::move(entry));
   for (const auto& [name, value] : entries) s += std::string(name) + " " + value + "\n";
@@ -118,7 +123,7 @@ std::string jsonOf(const Report& report) {
   for (const std::string& line : report.digests) digests += (digests.empty() ? "" : ", ") + jsonDigest(line);
   if (!report.digests.empty()) parts.emplace_back("digests", "[" + digests + "]");
   if (report.statistics)
-    parts.emplace_back("statistics", jsonObject(statisticsOf(*report.statistics, report.transfer)));
+    parts.emplace_back("statistics", jsonObject(statisticsOf(*report.statistics, report.transfer, report.lights)));
   if (report.frame && report.run) parts.emplace_back("timings", jsonObject(timingsOf(*report.frame, *report.run)));
   return jsonObject(parts) + "\n";
 }

@@ -27,6 +27,7 @@ struct Report {
   std::vector<std::string> digests;  // as from digestLines; empty: not asked for
   const raster::Statistics* statistics = nullptr;
   const post::TransferStatistics* transfer = nullptr;  // goes with `statistics`
+  const engine::LightStatistics* lights = nullptr;     // likewise
   const engine::FrameTimings* frame = nullptr;  // both or neither
   const RunTimings* run = nullptr;
 };

@@ -65,13 +65,15 @@ Surface surfaceOf(const raster::Material& m, TextureMeans& means) {
 struct Sums {
   double area = 0;
   glm::dvec3 colored{0};  // times the vertex colour
+  glm::dvec3 lit{0};      // that, times the irradiance over pi
 };
 
 class InstanceTriangles {
  public:
-  InstanceTriangles(const Mesh& mesh, const glm::dmat4& worldFromObject, bool bothSides, const std::vector<glm::dvec3>& directions)
-      : mesh_(mesh), linear_(worldFromObject), flip_(glm::determinant(linear_) < 0 ? -0.5 : 0.5), bothSides_(bothSides),
-        directions_(directions), weights_(directions.size()) {}
+  InstanceTriangles(const Mesh& mesh, const glm::dmat4& worldFromObject, bool bothSides, const std::vector<glm::dvec3>& directions,
+                    const BouncedLight* direct)
+      : mesh_(mesh), worldFromObject_(worldFromObject), linear_(worldFromObject), flip_(glm::determinant(linear_) < 0 ? -0.5 : 0.5),
+        bothSides_(bothSides), directions_(directions), direct_(direct), weights_(directions.size()) {}
 
   void add(size_t first, size_t end, Sums* sums) {
     for (size_t i = first; i < end; ++i) {
@@ -81,36 +83,42 @@ class InstanceTriangles {
       glm::dvec3 color(1);
       if (!mesh_.colors.empty())
         color = (glm::dvec3(mesh_.colors[v[0]]) + glm::dvec3(mesh_.colors[v[1]]) + glm::dvec3(mesh_.colors[v[2]])) / 3.0;
-      addSide(normal, color, sums);
-      if (bothSides_) addSide(-normal, color, sums);
+      const glm::dvec3 center(worldFromObject_ * glm::dvec4((a + b + c) / 3.0, 1));
+      addSide(center, normal, color, sums);
+      if (bothSides_) addSide(center, -normal, color, sums);
     }
   }
 
  private:
   // normal: as long as the area.
-  void addSide(const glm::dvec3& normal, const glm::dvec3& color, Sums* sums) {
+  void addSide(const glm::dvec3& center, const glm::dvec3& normal, const glm::dvec3& color, Sums* sums) {
     double all = 0;
     for (size_t k = 0; k < directions_.size(); ++k) all += weights_[k] = std::max(0.0, glm::dot(normal, directions_[k]));
     const double area = std::sqrt(glm::dot(normal, normal));
     if (!(all > 0 && area < 1e200)) return;
     const double scale = area / all;
+    const glm::dvec3 lit = direct_ ? color * direct_->at(center, normal / area) / 3.141592653589793 : glm::dvec3(0);
     for (size_t k = 0; k < directions_.size(); ++k) {
       sums[k].area += weights_[k] * scale;
       sums[k].colored += color * (weights_[k] * scale);
+      sums[k].lit += lit * (weights_[k] * scale);
     }
   }
 
   const Mesh& mesh_;
+  const glm::dmat4 worldFromObject_;
   const glm::dmat3 linear_;
   const double flip_;
   const bool bothSides_;
   const std::vector<glm::dvec3>& directions_;
+  const BouncedLight* direct_;
   std::vector<double> weights_;
 };
 
 }  // namespace
 
-std::vector<AmbientClass> ambientClasses(const Scene& scene, const std::vector<glm::dvec3>& directions, raster::Parallel& parallel) {
+std::vector<AmbientClass> ambientClasses(const Scene& scene, const std::vector<glm::dvec3>& directions, raster::Parallel& parallel,
+                                         const BouncedLight* direct) {
   const size_t classes = directions.size();
   std::vector<AmbientClass> all(classes);
   for (size_t k = 0; k < classes; ++k) all[k].direction = directions[k];
@@ -122,7 +130,7 @@ std::vector<AmbientClass> ambientClasses(const Scene& scene, const std::vector<g
     const size_t triangles = mesh.indices.size() / 3, tasks = (triangles + kTrianglesPerTask - 1) / kTrianglesPerTask;
     parts.assign(tasks * classes, {});
     parallel.forRanges(tasks, 1, [&](size_t first, size_t end, int) {
-      InstanceTriangles each(mesh, instance.worldFromObject, material.doubleSided, directions);
+      InstanceTriangles each(mesh, instance.worldFromObject, material.doubleSided, directions, direct);
       for (size_t t = first; t < end; ++t)
         each.add(t * kTrianglesPerTask, std::min((t + 1) * kTrianglesPerTask, triangles), &parts[t * classes]);
     });
@@ -132,6 +140,7 @@ std::vector<AmbientClass> ambientClasses(const Scene& scene, const std::vector<g
       to.area += parts[i].area;
       to.reflected += surface.reflectance * parts[i].colored;
       // Vertex colours are part of the base colour, which is what is emitted by unlit things only.
+      to.emitted += surface.reflectance * parts[i].lit;
       to.emitted += material.unlit ? surface.emission * parts[i].colored : surface.emission * parts[i].area;
     }
   }
@@ -173,9 +182,10 @@ std::vector<glm::vec3> incomingLight(const std::vector<AmbientClass>& classes, c
   return incoming;
 }
 
-Result<std::array<glm::vec3, 6>> extendedAmbient(const Scene& scene, const std::optional<glm::dvec3>& light, raster::Parallel& parallel) {
+Result<std::array<glm::vec3, 6>> extendedAmbient(const Scene& scene, const std::optional<glm::dvec3>& light, raster::Parallel& parallel,
+                                                 const BouncedLight* direct) {
   const std::array<glm::dvec3, 6> cube = cubeDirections();
-  const std::vector<AmbientClass> classes = ambientClasses(scene, {cube.begin(), cube.end()}, parallel);
+  const std::vector<AmbientClass> classes = ambientClasses(scene, {cube.begin(), cube.end()}, parallel, direct);
   const bool dark = std::none_of(classes.begin(), classes.end(), [](const AmbientClass& k) { return k.emitted.x + k.emitted.y + k.emitted.z > 0; });
   const std::vector<glm::vec3> in = incomingLight(classes, light.value_or(glm::dvec3(dark ? 1 : 0)));
   float mean = 0;

@@ -8,6 +8,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "obscura/engine/bounced_light.h"
 #include "obscura/engine/result.h"
 #include "obscura/engine/scene.h"
 #include "obscura/raster/parallel.h"
@@ -20,14 +21,15 @@ struct AmbientClass {
   glm::dvec3 direction{0, 0, 1};  // f_k, unit, world space
   double area = 0;                // A_k   = sum mu_ik A_i
   glm::dvec3 reflected{0};        // sum mu_ik A_i rho_i: A_k times the mean reflectance
-  glm::dvec3 emitted{0};          // U_k   = sum mu_ik A_i E_i, the unshot power
+  glm::dvec3 emitted{0};          // U_k   = sum mu_ik A_i E_i, the unshot power: emission, and what is reflected of direct lights
 };
 
 // A triangle's reflectance is its base colour, with the mean of the texture instead of what the triangle shows of it, and
 // with the mean of its vertex colours; what is unlit reflects nothing and emits that. Double-sided triangles are two.
 // Triangles without area count nothing, nor do those that face away from all directions; implicit surfaces have no
-// triangles. The sums do not depend on the number of threads.
-std::vector<AmbientClass> ambientClasses(const Scene& scene, const std::vector<glm::dvec3>& directions, raster::Parallel& parallel);
+// triangles. Direct light, if there is any, is that of a triangle's centre. The sums do not depend on the number of threads.
+std::vector<AmbientClass> ambientClasses(const Scene& scene, const std::vector<glm::dvec3>& directions, raster::Parallel& parallel,
+                                         const BouncedLight* direct = nullptr);
 
 // The incoming light per class, equations 1 and 2:  B_k = U_k / A_k + rho_k In_k,  In_k = sum_j F_kj B_j, with F_kk = 0 and
 // F_kj = 1 / (C - 1). `light`: what arrives everywhere besides, such as a constant ambient term; its first reflection is
@@ -36,9 +38,10 @@ std::vector<AmbientClass> ambientClasses(const Scene& scene, const std::vector<g
 std::vector<glm::vec3> incomingLight(const std::vector<AmbientClass>& classes, const glm::dvec3& light);
 
 // Both, for the six faces of a cube: FrameSettings::ambientDirections, to be used with an ambient light of 1. Without a light
-// there is that of the scene's emitters alone; where nothing emits, white light from everywhere, such that its mean over
+// there is that of the scene's emitters and of `direct` lights alone; where nothing emits, white light from everywhere, such that its mean over
 // classes and channels is 1 with all reflections: as bright as the constant term, as in an open scene reflections would
 // only add to a light that is not there. BadInput: a light beyond what floats hold.
-Result<std::array<glm::vec3, 6>> extendedAmbient(const Scene& scene, const std::optional<glm::dvec3>& light, raster::Parallel& parallel);
+Result<std::array<glm::vec3, 6>> extendedAmbient(const Scene& scene, const std::optional<glm::dvec3>& light, raster::Parallel& parallel,
+                                                 const BouncedLight* direct = nullptr);
 
 }  // namespace obscura::engine

@@ -8,7 +8,9 @@
 
 #include "obscura/engine/ambient_light.h"
 #include "obscura/engine/crop.h"
+#include "obscura/engine/direct_lights.h"
 #include "obscura/engine/downsample_frame.h"
+#include "obscura/engine/draw_list.h"
 #include "obscura/engine/frame_needs.h"
 #include "obscura/post/asked.h"
 #include "obscura/post/environment_background.h"
@@ -26,14 +28,13 @@ struct Renderer::State {
   raster::Rasterizer rasterizer;
   raster::Parallel parallel;
   post::DisplayTable table;
-  std::vector<raster::MeshView> meshes;
-  std::vector<raster::Instance> instances;
-  std::vector<raster::TextureView> textures;
-  std::vector<raster::HeightView> heights;
-  std::vector<raster::Material> flat;           // without height maps, where the frame wants none
+  SceneDraws draws;
   std::vector<glm::vec3> ambientOfInstances;
   post::AmbientLight ambient;
   post::LinearColor radiance;  // of what is drawn, for the transfer that reads it
+  DirectLights lights;
+  post::LinearColor drawnDirect, direct;  // of what is drawn, of what is given
+  raster::Plane<float> whole;  // depth of image and border, where less is drawn
   std::vector<raster::ImplicitDraw> implicits;  // of the frame
   post::DepthBounds bounds;
   raster::Plane<uint8_t> asked;
@@ -51,7 +52,6 @@ struct Renderer::State {
   State(const raster::Settings& s, bool ref)
       : settings(s), reference(ref), target(raster::chooseTarget(s.target)), rasterizer(s), parallel(ref ? 1 : s.threads) {}
 
-  raster::DrawList drawList(const Scene& scene, bool displacement);
   void rasterize(const raster::DrawList& list, const FrameSettings& s, const raster::PlaneSet& planes, const raster::Window& w,
                  raster::GBuffer& out);
   raster::Window windowToDraw(const raster::DrawList& list, const FrameSettings& s, const FrameNeeds& needs);
@@ -61,6 +61,7 @@ struct Renderer::State {
   static constexpr size_t kRowsPerTask = 8;
 
   void drawGBuffer(const Scene& scene, const FrameSettings& s, const FrameNeeds& needs, Frame& out);
+  void drawDirect(const Scene& scene, const FrameSettings& s, const FrameNeeds& needs, Frame& out);
   void drawTransfer(const FrameSettings& s, const FrameNeeds& needs, Frame& out);
   void drawLight(const FrameSettings& s, const FrameNeeds& needs, Frame& out);
   void drawBackground(const FrameSettings& s, Frame& out);
@@ -82,21 +83,6 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
-raster::DrawList Renderer::State::drawList(const Scene& scene, bool displacement) {
-  meshes.clear();
-  instances.clear();
-  textures.clear();
-  for (const Mesh& m : scene.meshes) meshes.push_back(m.view());
-  for (const Instance& i : scene.instances) instances.push_back({&meshes[i.mesh], scene.meshes[i.mesh].material, i.worldFromObject});
-  for (const Texture& t : scene.textures) textures.push_back(t.view);
-  heights.clear();
-  for (const HeightMap& h : scene.heightMaps) heights.push_back(h.view);
-  if (displacement) return {instances, scene.materials, textures, scene.implicits, heights};
-  flat = scene.materials;
-  for (raster::Material& m : flat) m.heightMap.texture = -1;
-  return {instances, flat, textures, scene.implicits};
-}
-
 void Renderer::State::rasterize(const raster::DrawList& list, const FrameSettings& s, const raster::PlaneSet& planes,
                                 const raster::Window& w, raster::GBuffer& out) {
   if (reference) raster::renderReference(list, s.camera, s.width, s.height, planes, out, w);
@@ -115,7 +101,7 @@ raster::Window Renderer::State::windowToDraw(const raster::DrawList& list, const
 }
 
 void Renderer::State::drawGBuffer(const Scene& scene, const FrameSettings& s, const FrameNeeds& needs, Frame& out) {
-  const raster::DrawList list = drawList(scene, s.displacement);
+  const raster::DrawList list = draws.of(scene, s.displacement);
   const raster::Window output = outputWindow(s);
   window = windowToDraw(list, s, needs);
   part = {output.x - window.x, output.y - window.y, output.width, output.height};
@@ -167,6 +153,30 @@ post::TransferStatistics Renderer::State::transferSums(post::TransferInput& in, 
   return all;
 }
 
+// What is reflected of direct lights: of all that is drawn where the transfer reads it.
+void Renderer::State::drawDirect(const Scene& scene, const FrameSettings& s, const FrameNeeds& needs, Frame& out) {
+  const raster::GBuffer& g = more() ? drawn : out.g;
+  post::LinearColor& to = more() ? drawnDirect : direct;
+  to = post::makeLinearColor(g.width, g.height, std::move(to));
+  const raster::DrawList list = draws.of(scene, s.displacement);
+  const raster::Window all = wholeWindow(s);
+  const bool missing = hasShadows(scene, s) && (window.width < all.width || window.height < all.height);
+  if (missing) {
+    raster::PlaneSet onlyDepth;
+    onlyDepth.depth = true;
+    raster::GBuffer depth;
+    rasterize(list, s, onlyDepth, all, depth);
+    whole = std::move(depth.depth);
+  }
+  const bool everywhere = needs.radiance;
+  const int firstRow = everywhere ? 0 : part.y, endRow = everywhere ? g.height : part.y + part.height;
+  const DirectLights::Input in{scene, s, list, g, post::makeProjector(s.camera, s.width, s.height, window), firstRow, endRow,
+                               missing ? whole : g.depth, post::makeProjector(s.camera, s.width, s.height, missing ? all : window),
+                               reference, settings.skip, target};
+  out.lightStatistics = lights.draw(in, rasterizer, parallel, to, out.timings);
+  for (int c = 0; c < 3 && more(); ++c) raster::cutOut(drawnDirect.rgb[c], part, direct.rgb[c]);
+}
+
 // O and W of the part that is given, and the G-buffer cut down to it.
 void Renderer::State::drawTransfer(const FrameSettings& s, const FrameNeeds& needs, Frame& out) {
   raster::Stopwatch watch;
@@ -175,10 +185,10 @@ void Renderer::State::drawTransfer(const FrameSettings& s, const FrameNeeds& nee
     post::TransferInput in{&g, post::makeProjector(s.camera, s.width, s.height, window), s.transfer, post::transferSamples(s.transfer)};
     if (!needs.albedo && !needs.radiance) in.settings.albedo = post::TransferAlbedo::Own;  // for O, which reads none
     in.implicits = implicits;
-    in.heights = heights;
+    in.heights = draws.heights();
     if (needs.radiance) {
       radiance = post::makeLinearColor(g.width, g.height, std::move(radiance));
-      const post::LightInput first{&g, nullptr, post::Occlusion::None, ambient, glm::vec3(0)};
+      const post::LightInput first{&g, nullptr, post::Occlusion::None, ambient, glm::vec3(0), needs.direct ? &(more() ? drawnDirect : direct) : nullptr};
       forRows(0, g.height, [&](int y0, int y1) {
         reference ? post::lightRef(first, y0, y1, radiance) : post::light(first, y0, y1, radiance, target);
       });
@@ -202,7 +212,7 @@ void Renderer::State::drawTransfer(const FrameSettings& s, const FrameNeeds& nee
 }
 
 void Renderer::State::drawLight(const FrameSettings& s, const FrameNeeds& needs, Frame& out) {
-  const post::LightInput in{&out.g, &out.transfer, needs.occlusion, ambient, s.background};
+  const post::LightInput in{&out.g, &out.transfer, needs.occlusion, ambient, s.background, needs.direct ? &direct : nullptr};
   if (needs.color) {
     for (int c = 0; overSums && c < 3; ++c) out.color.rgb[c] = std::exchange(sums.denominator[c], {});
     out.color = post::makeLinearColor(out.width, out.height, std::move(out.color));
@@ -246,6 +256,7 @@ FrameSettings subpixels(FrameSettings s) {
 
 Result<Done> Renderer::render(const Scene& scene, const FrameSettings& settings, Frame& frame) try {
   if (const char* wrong = wrongSetting(settings)) return Error{ErrorCode::Usage, wrong, "", ""};
+  if (const char* wrong = wrongLights(scene, settings)) return Error{ErrorCode::Usage, wrong, "", ""};
   if (const std::string wrong = wrongCrop(settings); !wrong.empty()) return Error{ErrorCode::Usage, wrong, "", ""};
   const FrameSettings full = subpixels(settings);
   if (const std::string wrong = wrongCrop(full); !wrong.empty()) return Error{ErrorCode::Usage, "of sub-pixels: " + wrong, "", ""};
@@ -266,8 +277,12 @@ Result<Done> Renderer::render(const Scene& scene, const FrameSettings& settings,
   if (needs.color || needs.radiance) s.ambient = ambientLightOf(scene, settings, s.ambientOfInstances);
   drawn.timings = {};
   drawn.transferStatistics = {};
+  drawn.lightStatistics = {};
   s.drawGBuffer(scene, full, needs, drawn);
   timings.gbuffer = watch.lap();
+  if (needs.direct) s.drawDirect(scene, full, needs, drawn);
+  timings.shadows = drawn.timings.shadows;
+  timings.direct = drawn.timings.direct;
   s.drawTransfer(full, needs, drawn);
   timings.transfer = drawn.timings.transfer;
   timings.filter = drawn.timings.filter;
@@ -280,6 +295,7 @@ Result<Done> Renderer::render(const Scene& scene, const FrameSettings& settings,
     downsampleFrame(drawn, settings, s.parallel, s.reference ? std::nullopt : std::optional(s.target), frame);
     frame.statistics = drawn.statistics;
     frame.transferStatistics = drawn.transferStatistics;
+    frame.lightStatistics = drawn.lightStatistics;
     for (int c = 0; c < 3; ++c) {  // the next frame needs them where they were
       if (s.overSums && needs.color) s.sums.denominator[c] = std::exchange(drawn.color.rgb[c], {});
       if (s.overNormals) (s.more() ? s.drawn : drawn.g).normal[c] = std::exchange((s.more() ? s.drawnTransfer : drawn.transfer).w[c], {});

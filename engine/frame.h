@@ -22,6 +22,7 @@
 namespace obscura::engine {
 
 constexpr float kMostExposure = 0x1p64f;
+constexpr int kMostShadowSize = 8192;
 
 struct FrameSettings {
   int width = 800, height = 600;  // pixels, 1 ... raster::kMaxImageSize
@@ -43,6 +44,11 @@ struct FrameSettings {
   std::shared_ptr<const Environment> environment;
   double environmentRotation = 0;   // degrees around +y of the world, counter-clockwise seen from above
   double environmentIntensity = 1;  // a factor on it, 0 ... 10^6
+  // Direct lights, see post/direct_light.h: those of the scene, and others.
+  bool sceneLights = true;
+  std::vector<SceneLight> lights;
+  bool shadows = true;    // of lights that have them; only what lies in Scene::bounds casts any
+  int shadowSize = 2048;  // texels a side of a shadow map, 16 ... kMostShadowSize
   glm::vec3 background{0};        // linear
   bool environmentBackground = false;  // the environment instead, which has a cube then
   post::ToneSettings tone;             // of the displayed picture alone
@@ -52,14 +58,21 @@ struct FrameSettings {
   float separation = 0.01f;       // of Aov::Depth2, scene units, see raster::GBuffer
 };
 
+// What direct lights needed.
+struct LightStatistics {
+  uint64_t lights = 0, unseen = 0;  // unseen: of those with shadows, what reaches no pixel
+  uint64_t shadowMaps = 0;          // rendered
+};
+
 struct FrameTimings {  // milliseconds; 0 for what was not needed
-  double gbuffer = 0, transfer = 0, filter = 0, light = 0, downsample = 0, display = 0, frame = 0;
+  double gbuffer = 0, shadows = 0, direct = 0, transfer = 0, filter = 0, light = 0, downsample = 0, display = 0, frame = 0;
 };
 
 // Planes that no AOV needed are empty; O and W that are needed for the colour alone are those of open pixels where they
 // cannot be seen in it, as on black and on unlit things. With supersampling only planes that are AOVs themselves are there; how they come
 // from the sub-pixels: downsample_frame.h. The statistics are those of the sub-pixels' image.
-// With TransferAlbedo::Radiance the radiance is the emission and the ambient light La that the albedo reflects.
+// With TransferAlbedo::Radiance the radiance is the emission and what the albedo reflects of the ambient light La and of direct
+// lights.
 struct Frame {
   int width = 0, height = 0;            // of the planes: the crop's, or the image's
   int x = 0, y = 0;                     // where their pixel (0, 0) lies in the image
@@ -71,6 +84,7 @@ struct Frame {
   post::DisplayImage display;
   raster::Statistics statistics;
   post::TransferStatistics transferStatistics;  // 0 where the transfer was not needed or the reference made it
+  LightStatistics lightStatistics;
   FrameTimings timings;
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "obscura/engine/ambient_light.h"
+#include "obscura/engine/direct_lights.h"
 #include "obscura/raster/view.h"
 
 namespace obscura::engine {
@@ -45,8 +46,10 @@ FrameNeeds needsOf(const Scene& scene, const FrameSettings& s) {
   n.sums = w || n.transfer.obscurance;
   n.onlyLit = n.sums && !wants(Aov::Obscurance) && !wants(Aov::Transfer) && hasDarkThings(scene);
   const bool lights = n.color || n.radiance;
+  n.direct = lights && hasLights(scene, s);
   n.planes.depth = wants(Aov::Depth) || n.sums || n.color || s.supersample > 1;  // the nearest sub-pixel
-  n.planes.normal = wants(Aov::Normal) || n.sums || (lights && lightsByNormal(s));
+  n.planes.normal = wants(Aov::Normal) || n.sums || (lights && lightsByNormal(s)) || n.direct;
+  n.planes.facet = n.direct && hasShadows(scene, s);
   n.planes.albedo = wants(Aov::Albedo) || n.albedo || lights;
   n.planes.emissive = wants(Aov::Emissive) || (lights && std::any_of(scene.materials.begin(), scene.materials.end(), raster::emits));
   n.planes.position = wants(Aov::Position);

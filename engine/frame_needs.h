@@ -14,6 +14,7 @@ struct FrameNeeds {
   post::TransferPlanes transfer;
   bool albedo = false;    // of what occludes, or of the pixel itself
   bool radiance = false;  // of what occludes
+  bool direct = false;    // lights
   bool onlyLit = false;   // O and W are for the colour alone, and some pixels may reflect nothing
 };
 

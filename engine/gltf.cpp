@@ -37,6 +37,7 @@ class Assembly {
       for (size_t i = begin; i < end; ++i) clusterMesh(scene_.meshes[i]);
     });
     scene_.cameras = std::move(tree.cameras);
+    scene_.lights = std::move(tree.lights);
     for (const tinygltf::Node& node : model_.nodes) scene_.nodeNames.push_back(node.name);
     scene_.warnings = std::move(document_.warnings.lines);
     return std::move(scene_);

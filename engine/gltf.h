@@ -21,6 +21,7 @@ struct LoadLimits {
   uint64_t instances = 1ull << 24;
   uint64_t geometryBytes = 8ull << 30;      // vertices and indices of all meshes in memory, without clusters
   uint64_t zeroElements = 1ull << 20;       // of accessors without a bufferView, summed over their uses
+  uint32_t lights = 1024;                   // placed by nodes
   uint32_t nodeDepth = 1024;
   uint32_t textureSize = 16384;             // texels a side
   uint64_t textureBytes = 4ull << 30;       // all decoded levels together
@@ -39,8 +40,7 @@ struct LoadOptions {
 // decoded. A node's extras {"obscura_ambient": [r, g, b]} are the ambient light of what it and all below it show, the
 // nearest counts. Errors: Usage (options.scene or a node of options.ambient does not exist), else BadInput with the file and the JSON pointer concerned;
 // no exception escapes. What is left out (Scene::warnings says so, once a kind):
-//   - an extension that is not supported and not required; required ones are errors. KHR_lights_punctual is the
-//     exception: pictures are lit by the ambient light, so required or not it is left out;
+//   - an extension that is not supported and not required; required ones are errors;
 //   - points and lines; primitives without POSITION; triangles that a strip or list does not complete;
 //   - skins: the vertices are shown as stored, with the transform of their node (which glTF ignores for a skinned
 //     mesh, expecting the joints to bring it: in the bind pose of common exporters both are the same);

@@ -24,12 +24,11 @@ namespace obscura::engine::gltf {
 namespace {
 
 using Json = nlohmann::json;
+using namespace nlohmann::literals;
 
 constexpr const char* kSupportedExtensions[] = {
-    "EXT_mesh_gpu_instancing", "KHR_materials_emissive_strength", "KHR_materials_unlit", "KHR_mesh_quantization",
-    "KHR_texture_transform"};
-// May be required, and yet nothing that is drawn here is wrong without it.
-constexpr const char* kHarmlessExtension = "KHR_lights_punctual";
+    "EXT_mesh_gpu_instancing", "KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_unlit",
+    "KHR_mesh_quantization",   "KHR_texture_transform"};
 
 bool isSupported(const std::string& extension) {
   return std::find(std::begin(kSupportedExtensions), std::end(kSupportedExtensions), extension) !=
@@ -96,6 +95,13 @@ void checkEnumerations(const Json& root) {
     const std::string type = camera["type"].get<std::string>();
     if (!camera.contains(type)) fail(pointer("/cameras", i), type + " is missing");
   }
+  const Json lights = root.value("/extensions/KHR_lights_punctual/lights"_json_pointer, Json::array());
+  for (size_t i = 0; i < lights.size(); ++i) {
+    constexpr const char* kLights[] = {"directional", "point", "spot"};
+    const std::string path = pointer("/extensions/KHR_lights_punctual/lights", i);
+    check(lights[i], path, "type", kLights);
+    if (lights[i]["type"] == "spot" && !lights[i].contains("spot")) fail(path, "spot is missing");
+  }
 }
 
 void checkIndexAccessors(const Json& root) {
@@ -155,7 +161,7 @@ void Document::parse(Bytes text) {
     for (const Json& name : root.value(array, Json::array())) {
       const std::string extension = name.get<std::string>();
       if (!isSupported(extension)) {
-        if (isRequired && extension != kHarmlessExtension) {
+        if (isRequired) {
           fail(pointer(pointer("", array), index), "the required extension " + extension + " is not supported");
         }
         json.ignoredExtensions.insert(extension);

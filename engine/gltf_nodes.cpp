@@ -9,6 +9,7 @@
 
 #include "obscura/engine/gltf_accessor.h"
 #include "obscura/engine/gltf_implicit.h"
+#include "obscura/engine/gltf_lights.h"
 
 namespace obscura::engine::gltf {
 namespace {
@@ -142,6 +143,7 @@ class Walk {
     if (node.mesh >= 0) placeMesh(node, uint32_t(p.node), path, worldFromNode, ambient);
     placeImplicit(node, path, worldFromNode);
     if (node.camera >= 0) placeCamera(node, path, worldFromNode);
+    placeLight(node, path, worldFromNode);
     push(node.children, path + "/children", worldFromNode, ambient, p.depth + 1);
   }
 
@@ -239,6 +241,20 @@ class Walk {
       return;
     }
     tree_.cameras.push_back(std::move(camera));
+  }
+
+  void placeLight(const tinygltf::Node& node, const std::string& path, const dmat4& worldFromNode) {
+    const auto extension = node.extensions.find("KHR_lights_punctual");
+    if (extension == node.extensions.end()) return;
+    SceneLight light = readLight(document_, extension->second.Get("light").GetNumberAsInt(), path + "/extensions/KHR_lights_punctual/light");
+    if (tree_.lights.size() >= document_.options.limits.lights)
+      fail(path, "more lights than the limit of " + std::to_string(document_.options.limits.lights));
+    if (light.name.empty()) light.name = node.name;
+    if (!placeAt(worldFromNode, light)) {
+      document_.warnings.add("lights whose transform is singular or not finite are ignored");
+      return;
+    }
+    tree_.lights.push_back(std::move(light));
   }
 
   Document& document_;

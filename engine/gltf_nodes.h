@@ -18,10 +18,11 @@ struct NodeTree {
   std::vector<Placement> placements;  // in the order of the nodes, depth first; of one node by instance
   std::vector<raster::ImplicitSurface> implicits;  // likewise; without a material it is the default one
   std::vector<SceneCamera> cameras;   // likewise
+  std::vector<SceneLight> lights;     // likewise
 };
 
 // Matrices are accumulated in double. Errors: a node that is reached twice (a cycle, or two parents) or too deep,
-// more instances than the limit; an ambient light that is no colour, or one for a node that the scene does not have.
+// more instances or lights than the limit; an ambient light that is no colour, or one for a node that the scene does not have.
 NodeTree placeNodes(Document& document);
 
 }  // namespace obscura::engine::gltf

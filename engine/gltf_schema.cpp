@@ -97,7 +97,8 @@ constexpr Field kMesh[] = {optional("name", Kind::String),
                            {"primitives", Kind::Objects, kRequired, 0, kPrimitive},
                            extensions({})};
 constexpr Field kInstancing[] = {required("attributes", Kind::IndexMap)};
-constexpr Field kNodeExtensions[] = {object("EXT_mesh_gpu_instancing", kInstancing)};
+constexpr Field kNodeLight[] = {required("light", Kind::Index)};
+constexpr Field kNodeExtensions[] = {object("EXT_mesh_gpu_instancing", kInstancing), object("KHR_lights_punctual", kNodeLight)};
 // The loader's own, in the extras of a node (and above, of a material); which members a type needs is for whoever reads it.
 constexpr Field kBall[] = {numbers("center", 3), required("radius", Kind::Number)};
 constexpr Field kImplicit[] = {
@@ -122,13 +123,18 @@ constexpr Field kSampler[] = {optional("magFilter", Kind::Index), optional("minF
                               optional("wrapS", Kind::Index), optional("wrapT", Kind::Index)};
 constexpr Field kTexture[] = {optional("sampler", Kind::Index), optional("source", Kind::Index), extensions({})};
 constexpr Field kAsset[] = {required("version", Kind::String)};
+constexpr Field kSpot[] = {optional("innerConeAngle", Kind::Number), optional("outerConeAngle", Kind::Number)};
+constexpr Field kLight[] = {optional("name", Kind::String), required("type", Kind::String), numbers("color", 3),
+                            optional("intensity", Kind::Number), optional("range", Kind::Number), object("spot", kSpot)};
+constexpr Field kLights[] = {{"lights", Kind::Objects, kRequired, 0, kLight}};
+constexpr Field kRootExtensions[] = {object("KHR_lights_punctual", kLights)};
 constexpr Field kRoot[] = {
     {"asset", Kind::Object, kRequired, 0, kAsset},
     optional("extensionsUsed", Kind::Strings), optional("extensionsRequired", Kind::Strings),
     optional("scene", Kind::Index), objects("scenes", kScene), objects("nodes", kNode), objects("meshes", kMesh),
     objects("accessors", kAccessor), objects("bufferViews", kBufferView), objects("buffers", kBuffer),
     objects("materials", kMaterial), objects("textures", kTexture), objects("images", kImage),
-    objects("samplers", kSampler), objects("cameras", kCamera), extensions({})};
+    objects("samplers", kSampler), objects("cameras", kCamera), extensions(kRootExtensions)};
 
 // A JSON pointer under construction; text is made only for a message.
 struct Path {

@@ -12,6 +12,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include "obscura/post/punctual_light.h"
 #include "obscura/raster/camera.h"
 #include "obscura/raster/clusters.h"
 #include "obscura/raster/implicit_surface.h"
@@ -65,6 +66,19 @@ struct SceneCamera {
   double zNear = 0.1, zFar = 0;   // zFar 0: none
 };
 
+// A light without extent, as in KHR_lights_punctual. World space; a node's scale is taken out.
+struct SceneLight {
+  std::string name;
+  post::LightKind kind = post::LightKind::Directional;
+  glm::dvec3 position{0};           // of point and spot
+  glm::dvec3 direction{0, 0, -1};   // unit, where it shines to; of directional and spot
+  glm::vec3 color{1};               // linear, times the intensity: lux (directional) or candela; 0 ... kMostLight
+  double range = 0;                 // of point and spot: how far it reaches, world units; 0: without end
+  double innerCone = 0, outerCone = 0.78539816339744828;  // of spot: radians from the direction, 0 <= inner <= outer <= pi / 2
+  bool shadows = true;
+};
+constexpr float kMostLight = 1e15f;
+
 struct Bounds {
   glm::dvec3 min{0}, max{0};
   bool empty = true;
@@ -81,6 +95,7 @@ struct Scene {
   std::vector<raster::ImplicitSurface> implicits;
   std::vector<std::string> nodeNames;
   std::vector<SceneCamera> cameras;
+  std::vector<SceneLight> lights;     // in the order of the node tree
   Bounds bounds;                      // of all instances and implicit surfaces, world space
   std::vector<std::string> warnings;  // one line each, every kind once
 };

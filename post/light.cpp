@@ -126,6 +126,7 @@ void lightRows(const LightInput& in, int y0, int y1, LinearColor& out) {
           else if (in.occlusion == Occlusion::Transfer) color = hn::Mul(color, hn::LoadU(d, in.transfer->w[c].row(y) + x));
           color = hn::Mul(color, channels[c]);
         }
+        if (in.direct) color = hn::Add(color, hn::LoadU(d, in.direct->rgb[c].row(y) + x));
         if (emits) color = hn::Add(color, hn::LoadU(d, g.emissive[c].row(y) + x));
         hn::StoreU(hn::IfThenElse(seen, color, hn::Set(d, in.background[c])), d, out.rgb[c].row(y) + x);
       }

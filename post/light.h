@@ -1,5 +1,5 @@
-// In:  albedo, emission, depth; O, W or the bounced light; what La depends on.
-// Out: linear colour, Lr = a W La + emission (long paper, equation 2).
+// In:  albedo, emission, depth; O, W or the bounced light; what La depends on; the light of direct lights that is reflected.
+// Out: linear colour, Lr = a W La + direct + emission (long paper, equation 2).
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -22,10 +22,11 @@ struct LightInput {
   Occlusion occlusion = Occlusion::Transfer;
   AmbientLight ambient;
   glm::vec3 background{0};             // linear; where nothing was drawn
+  const LinearColor* direct = nullptr; // reflected, see direct_light.h; of the G-buffer's size; null: none
 };
 
 // Without occlusion this is also a first guess of what the occluders send back, see TransferInput::radiance: their
-// emission, and the ambient light reflected as if all of it arrived.
+// emission, direct light, and the ambient light reflected as if all of it arrived.
 void light(const LightInput& in, int y0, int y1, LinearColor& out, raster::Target target);
 void lightRef(const LightInput& in, int y0, int y1, LinearColor& out);  // the scalar twin
 

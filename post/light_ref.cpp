@@ -54,6 +54,7 @@ void lightRef(const LightInput& in, int y0, int y1, LinearColor& out) {
           reflected = in.transfer->bounced[c].empty()
                           ? a * in.transfer->w[c].at(x, y) * la[c]
                           : a * (in.transfer->obscurance.at(x, y) * la[c] + in.transfer->bounced[c].at(x, y));
+        if (in.direct) reflected += in.direct->rgb[c].at(x, y);
         const float emitted = g.emissive[c].empty() ? 0 : g.emissive[c].at(x, y);
         out.rgb[c].at(x, y) = isSeen(g, x, y) ? reflected + emitted : in.background[c];
       }

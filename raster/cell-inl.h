@@ -14,6 +14,7 @@
 
 #include "obscura/raster/normal-inl.h"
 #include "obscura/raster/tile.h"
+#include "obscura/raster/wanted-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace obscura::raster {
@@ -28,6 +29,7 @@ struct CellTriangles {
   HWY_ALIGN int32_t vertex[3][kRoom];
   HWY_ALIGN float c[3][kRoom], gx[3][kRoom], gy[3][kRoom];  // weight planes
   HWY_ALIGN float normal[9][kRoom];  // x, y, z of corner 0, of corner 1 - corner 0, of corner 2 - corner 0; camera space
+  HWY_ALIGN float facet[3][kRoom];   // alike: the triangle's own
   const Draw* draw[kRoom];
   bool oneDraw = true;               // all triangles are of the same
   // Vectors of pixels in the order of the tile's memory: numbers of the triangles that each shows.
@@ -154,7 +156,7 @@ HWY_INLINE void weightPlanesOf(const View& view, const Draw& draw, const PlaneIn
 }
 
 // The triangles `mine` of the vector from number `first`, all of `draw`.
-HWY_INLINE void describeVector(const View& view, const Draw& draw, bool normals, int x, int y, int first, MI mine,
+HWY_INLINE void describeVector(const View& view, const Draw& draw, const Wanted& wanted, int x, int y, int first, MI mine,
                                CellTriangles& cell) {
   const DF d;
   const DI di;
@@ -179,8 +181,14 @@ HWY_INLINE void describeVector(const View& view, const Draw& draw, bool normals,
     hn::BlendedStore(hn::Load(d, planes.gx[i]), lanes, d, cell.gx[i] + first);
     hn::BlendedStore(hn::Load(d, planes.gy[i]), lanes, d, cell.gy[i] + first);
   }
-  if (!normals) return;
   V3 n[3];
+  if (wanted.facet) {
+    const V3 f = flatNormal(draw, object);
+    hn::BlendedStore(f.x, lanes, d, cell.facet[0] + first);
+    hn::BlendedStore(f.y, lanes, d, cell.facet[1] + first);
+    hn::BlendedStore(f.z, lanes, d, cell.facet[2] + first);
+  }
+  if (!wanted.normal) return;
   const bool smooth = !draw.mesh->normals.empty();
   if (!smooth) n[0] = flatNormal(draw, object);
   for (int i = 0; i < 3; ++i) n[i] = smooth ? rotate(draw.normalToView, corner3(s, draw.mesh->normals, i)) : n[0];
@@ -194,11 +202,11 @@ HWY_INLINE void describeVector(const View& view, const Draw& draw, bool normals,
 }
 
 // Fills what findTriangles left open; x, y: the cell's first pixel.
-HWY_INLINE void describeTriangles(const SurfaceContext& context, bool geometry, bool normals, int x, int y, CellTriangles& cell) {
+HWY_INLINE void describeTriangles(const SurfaceContext& context, const Wanted& wanted, int x, int y, CellTriangles& cell) {
   const DI di;
   const DU du;
   const int lanes = int(hn::Lanes(di));
-  if (!geometry) return;
+  if (!wanted.surfaces()) return;
   for (int k = 0; k < cell.count; ++k) {
     const Draw& draw = *cell.draw[k];
     const size_t triangle = cell.id[k] - draw.firstTriangle;
@@ -215,7 +223,7 @@ HWY_INLINE void describeTriangles(const SurfaceContext& context, bool geometry, 
       const Draw& draw = *cell.draw[first + int(hn::FindKnownFirstTrue(di, rest))];
       const VU offset = hn::Sub(id, hn::Set(du, draw.firstTriangle));
       const MI mine = hn::And(rest, hn::RebindMask(di, hn::Lt(offset, hn::Set(du, draw.triangleCount))));
-      describeVector(*context.view, draw, normals, x, y, first, mine, cell);
+      describeVector(*context.view, draw, wanted, x, y, first, mine, cell);
       rest = hn::AndNot(mine, rest);
     } while (!hn::AllFalse(di, rest));
   }

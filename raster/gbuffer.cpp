@@ -9,6 +9,7 @@ GBuffer::GBuffer(int w, int h, const PlaneSet& planes) : width(w), height(h) {
   make(planes.depth, depth);
   for (int c = 0; c < 3; ++c) {
     make(planes.normal, normal[c]);
+    make(planes.facet, facet[c]);
     make(planes.albedo, albedo[c]);
     make(planes.emissive, emissive[c]);
     make(planes.position, position[c]);
@@ -25,7 +26,7 @@ GBuffer::GBuffer(int w, int h, const PlaneSet& planes) : width(w), height(h) {
 }
 
 bool GBuffer::has(const PlaneSet& planes) const {
-  return planes.depth != depth.empty() && planes.normal != normal[0].empty() && planes.albedo != albedo[0].empty() &&
+  return planes.depth != depth.empty() && planes.normal != normal[0].empty() && planes.facet != facet[0].empty() && planes.albedo != albedo[0].empty() &&
          planes.emissive != emissive[0].empty() && planes.position != position[0].empty() &&
          planes.metallic != metallic.empty() && planes.roughness != roughness.empty() &&
          planes.triangle != triangle.empty() && planes.instance != instance.empty() &&
@@ -39,6 +40,7 @@ void cutOut(const GBuffer& from, const Window& part, GBuffer& to) {
   cutOut(from.depth, part, to.depth);
   for (int c = 0; c < 3; ++c) {
     cutOut(from.normal[c], part, to.normal[c]);
+    cutOut(from.facet[c], part, to.facet[c]);
     cutOut(from.albedo[c], part, to.albedo[c]);
     cutOut(from.emissive[c], part, to.emissive[c]);
     cutOut(from.position[c], part, to.position[c]);

@@ -18,14 +18,15 @@ struct PlaneSet {
   float separation = 0;  // of depth2: scene units, positive and finite; not read without it
   bool relief = false;   // for the transfer of displaced surfaces; not without `normal`
   bool metallic = false, roughness = false;
+  bool facet = false;
 
   // Nothing but depths: ids, normals and materials are not even kept per pixel, alpha is tested all the same.
   bool depthsAlone() const {
-    return !(normal || albedo || emissive || position || triangle || instance || material || relief || metallic || roughness);
+    return !(normal || albedo || emissive || position || triangle || instance || material || relief || metallic || roughness || facet);
   }
 };
 
-// Empty pixels hold: depths infinity; normal, albedo, emissive, position, metallic and roughness 0;
+// Empty pixels hold: depths infinity; normal, facet, albedo, emissive, position, metallic and roughness 0;
 // ids kNoTriangle.
 //
 // Behind the first layer, which is what `depth` shows, there can be two more. Both are the largest depth key (view.h) up
@@ -42,6 +43,7 @@ struct GBuffer {
   int width = 0, height = 0;
   Plane<float> depth;        // zView: distance along the view axis, scene units
   Plane<float> normal[3];    // unit, camera space: x right, y up, z towards the eye
+  Plane<float> facet[3];     // unit normal of the triangle itself, not interpolated, not mapped, on either side; else as normal
   Plane<float> albedo[3];    // linear, [0, 1]: base colour factor x texture x vertex colour; 0 where unlit
   Plane<float> emissive[3];  // linear, >= 0; the base colour where unlit
   Plane<float> position[3];  // camera space, scene units

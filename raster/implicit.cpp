@@ -174,7 +174,7 @@ void DrawImplicit(const View& view, const ImplicitDraw& s, const TileBuffers& ti
       const Crossing crossing = trace(view, s, ray, {set(d, view.zNear), true, s.doubleSided});
       if (hn::AllFalse(d, crossing.found)) continue;
       hn::Store(hn::IfThenElse(crossing.found, crossing.z, set(d, std::numeric_limits<double>::infinity())), d, found.z);
-      if (!out.normal[0].empty()) {
+      if (!out.normal[0].empty() || !out.facet[0].empty()) {
         const P n = normalOf(s, ray.at(crossing.z));
         const VD sign = hn::IfThenElse(crossing.enters, set(d, 1), set(d, -1));
         hn::Store(hn::Mul(n.x, sign), d, found.nx);

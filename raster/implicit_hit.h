@@ -38,6 +38,7 @@ inline void storeHit(const View& view, const ImplicitDraw& s, const TileBuffers&
   if (view.perspective) px *= zView, py *= zView;
   store3(glm::vec3(px, py, 0 - zView), x, y, out.position);
   store3(hit.normal, x, y, out.normal);
+  store3(hit.normal, x, y, out.facet);
   store3(s.albedo, x, y, out.albedo);
   store3(s.emissive, x, y, out.emissive);
   if (!out.metallic.empty()) out.metallic.at(x, y) = s.metallic;

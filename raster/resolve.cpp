@@ -62,7 +62,7 @@ HWY_INLINE void storeVisibility(const View& view, const TileBuffers& tile, GBuff
 // Four rows of the cell: a block after the other for each plane, as in the tile's memory.
 struct Strip {
   static constexpr int kPixels = kCell * kBlock;
-  HWY_ALIGN float normal[3][kPixels], albedo[3][kPixels], emissive[3][kPixels], metallic[kPixels], roughness[kPixels];
+  HWY_ALIGN float normal[3][kPixels], facet[3][kPixels], albedo[3][kPixels], emissive[3][kPixels], metallic[kPixels], roughness[kPixels];
   HWY_ALIGN uint32_t instance[kPixels], material[kPixels];
 };
 
@@ -84,6 +84,7 @@ HWY_INLINE void storePlane(const T* blocks, int x, int y, int rows, Plane<T>& pl
 HWY_INLINE void storeStrip(const Strip& s, const Wanted& wanted, int x, int y, int rows, GBuffer& out) {
   for (int c = 0; c < 3 && wanted.surfaces(); ++c) {
     storePlane(s.normal[c], x, y, rows, out.normal[c]);
+    storePlane(s.facet[c], x, y, rows, out.facet[c]);
     storePlane(s.albedo[c], x, y, rows, out.albedo[c]);
     storePlane(s.emissive[c], x, y, rows, out.emissive[c]);
   }
@@ -120,7 +121,7 @@ HWY_INLINE void resolveCell(const SurfaceContext& context, const TileBuffers& ti
   const DU du;
   const CellBlocks blocks = blocksOf(tile, left, top);
   findTriangles(context, tile, blocks, cell);
-  describeTriangles(context, wanted.surfaces(), wanted.normal, tile.x + left, tile.y + top, cell);
+  describeTriangles(context, wanted, tile.x + left, tile.y + top, cell);
   int vector = 0, slot = 0;
   Strip strip;
   for (int row = 0; row < blocks.rows; ++row) {
@@ -138,6 +139,7 @@ HWY_INLINE void resolveCell(const SurfaceContext& context, const TileBuffers& ti
         const Shaded s = shade(context, wanted, t, hn::RebindMask(d, hn::Ne(id, hn::Set(du, kNoTriangle))),
                                hn::ConvertTo(d, hn::Add(lx, hn::Set(di, dx))), hn::ConvertTo(d, hn::Add(ly, hn::Set(di, dy))));
         if (wanted.normal) keep(s.normal, strip.normal, at);
+        if (wanted.facet) keep(s.facet, strip.facet, at);
         if (wanted.albedo) keep(s.albedo, strip.albedo, at);
         if (wanted.emissive) keep(s.emissive, strip.emissive, at);
         if (!wanted.gloss) continue;
@@ -160,7 +162,7 @@ HWY_INLINE void fill(const TileBuffers& tile, Plane<T>& plane, T value) {
 void ResolveEmpty(const TileBuffers& tile, GBuffer& out) {
   fill(tile, out.depth, std::numeric_limits<float>::infinity());
   for (int c = 0; c < 3; ++c)
-    for (Plane<float>* p : {&out.normal[c], &out.albedo[c], &out.emissive[c], &out.position[c]}) fill(tile, *p, 0.0f);
+    for (Plane<float>* p : {&out.normal[c], &out.facet[c], &out.albedo[c], &out.emissive[c], &out.position[c]}) fill(tile, *p, 0.0f);
   for (Plane<float>* p : {&out.metallic, &out.roughness}) fill(tile, *p, 0.0f);
   for (Plane<uint32_t>* p : {&out.triangle, &out.instance, &out.material}) fill(tile, *p, kNoTriangle);
   hwy::FlushStream();

@@ -107,6 +107,7 @@ void resolveImplicit(const View& view, const ImplicitDraw& surface, const glm::v
   const float zView = view.perspective ? 1 / key : 0 - key;
   if (!out.depth.empty()) out.depth.at(x, y) = zView;
   store(out.normal, x, y, normal);
+  store(out.facet, x, y, normal);
   store(out.albedo, x, y, surface.albedo);
   store(out.emissive, x, y, surface.emissive);
   store(out.metallic, x, y, surface.metallic);
@@ -158,12 +159,13 @@ void resolvePixel(const SurfaceContext& context, uint32_t id, float key, int x, 
     const Material& m = *draw.material;
     const SurfacePoint p = seePixel(*context.view, draw, id - draw.firstTriangle, x, y);
     glm::vec3 emitted = m.emissive;
+    store(out.facet, x, y, geometricNormal(p));
     if (m.emissiveMap.texture >= 0) emitted *= glm::vec3(sampleSlot(context, p, m.emissiveMap));
     const glm::vec2 gloss = metallicRoughness(context, p);
     return resolveShaded(context, id, key, {shadingNormal(context, p), glm::vec3(baseColor(context, p)), emitted, gloss.x, gloss.y}, x, y, out);
   }
   if (!out.depth.empty()) out.depth.at(x, y) = std::numeric_limits<float>::infinity();
-  for (auto* planes : {out.normal, out.albedo, out.emissive, out.position}) store(planes, x, y, glm::vec3(0));
+  for (auto* planes : {out.normal, out.facet, out.albedo, out.emissive, out.position}) store(planes, x, y, glm::vec3(0));
   store(out.metallic, x, y, 0);
   store(out.roughness, x, y, 0);
   for (Plane<uint32_t>* plane : {&out.triangle, &out.instance, &out.material}) store(*plane, x, y, kNoTriangle);

@@ -65,8 +65,19 @@ HWY_INLINE V3 interpolatedNormal(const VectorTriangles& t, const Seen& s) {
   return n;
 }
 
+HWY_INLINE V3 facetOf(const VectorTriangles& t) {
+  const DF d;
+  auto facet = [&](int k) HWY_ATTR {
+    const int slot = t.slot[k];
+    return V3{hn::Set(d, t.cell.facet[0][slot]), hn::Set(d, t.cell.facet[1][slot]), hn::Set(d, t.cell.facet[2][slot])};
+  };
+  V3 f = facet(0);
+  for (int k = 1; k < t.count; ++k) f = select(t.shows(k), facet(k), f);
+  return f;
+}
+
 struct Shaded {
-  V3 normal, albedo, emissive;
+  V3 normal, facet, albedo, emissive;
   Gloss gloss;
 };
 
@@ -145,7 +156,7 @@ HWY_INLINE Shaded shade(const SurfaceContext& context, const Wanted& wanted, con
   const DF d;
   const VF zero = hn::Zero(d);
   const V3 none{zero, zero, zero};
-  Shaded out{none, none, none, {zero, zero}};
+  Shaded out{none, none, none, none, {zero, zero}};
   if (t.count == 0) return out;
   const MF nowhere = hn::Lt(zero, zero);
   MF noNormal = nowhere, behind = nowhere;
@@ -161,13 +172,14 @@ HWY_INLINE Shaded shade(const SurfaceContext& context, const Wanted& wanted, con
       if (t.draw(k).material->doubleSided)
         behind = hn::Or(behind, hn::And(t.showsDraw(t.draw(k)), t.draw(k).mirrored ? hn::Not(s.clockwise) : s.clockwise));
   }
+  if (wanted.facet) out.facet = facetOf(t);
   constantColors(t, wanted, out);
   if (HWY_UNLIKELY(more || !hn::AllFalse(d, noNormal)))
     for (int k = 0; k < t.draws; ++k)
       if (t.firstOfItsDraw(k)) shadeDraw(context, t.draw(k), wanted, t, noNormal, s, out);
   out.normal = select(behind, {hn::Neg(out.normal.x), hn::Neg(out.normal.y), hn::Neg(out.normal.z)}, out.normal);
-  return {select(covered, out.normal, none), select(covered, out.albedo, none), select(covered, out.emissive, none),
-          select(covered, out.gloss, {zero, zero})};
+  return {select(covered, out.normal, none), select(covered, out.facet, none), select(covered, out.albedo, none),
+          select(covered, out.emissive, none), select(covered, out.gloss, {zero, zero})};
 }
 
 }  // namespace HWY_NAMESPACE

@@ -16,12 +16,12 @@ namespace obscura::raster {
 namespace HWY_NAMESPACE {
 
 struct Wanted {
-  bool normal, albedo, emissive, gloss, draws;  // gloss: metallic or roughness; draws: instance or material
+  bool normal, facet, albedo, emissive, gloss, draws;  // gloss: metallic or roughness; draws: instance or material
   explicit Wanted(const GBuffer& g)
-      : normal(!g.normal[0].empty()), albedo(!g.albedo[0].empty()), emissive(!g.emissive[0].empty()),
+      : normal(!g.normal[0].empty()), facet(!g.facet[0].empty()), albedo(!g.albedo[0].empty()), emissive(!g.emissive[0].empty()),
         gloss(!g.metallic.empty() || !g.roughness.empty()),
         draws(!g.instance.empty() || !g.material.empty()) {}
-  bool surfaces() const { return normal || albedo || emissive || gloss; }
+  bool surfaces() const { return normal || facet || albedo || emissive || gloss; }
 };
 
 // The base colour is asked for and differs from pixel to pixel.

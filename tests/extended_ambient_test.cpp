@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include <glm/geometric.hpp>
+
 #include "obscura/engine/ambient_light.h"
 #include "obscura/engine/extended_ambient.h"
 #include "frame_checks.h"
@@ -249,4 +251,55 @@ TEST_CASE("extended ambient: in the paper's room the ball's side towards the red
   CHECK(middle.b > 0.1f);
   // Smooth over the curved surface: from pixel to pixel little changes.
   for (int x = 13; x < 48; ++x) CHECK(std::abs(at(x, 30).r - at(x - 1, 30).r) < 0.08f * at(x, 30).r);
+}
+
+TEST_CASE("extended ambient: the first bounce of direct light is rho E / pi of each triangle, unshot, none of what lies in shadow") {
+  Builder b;
+  b.addQuad({-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2}, {0.5f, 0.25f, 0});  // faces up
+  b.scene.bounds = {glm::dvec3(-3), glm::dvec3(3), false};
+  engine::SceneLight sun;
+  sun.direction = glm::normalize(glm::dvec3(1, -1, 0));
+  sun.color = {2, 4, 8};
+  const auto unshot = [&](const engine::SceneLight& light) {
+    const engine::BouncedLight direct(b.scene, {&light, 1}, true, {});
+    raster::Parallel parallel(2);
+    std::vector<AmbientClass> classes = engine::ambientClasses(b.scene, sixDirections(), parallel, &direct);
+    for (size_t k : {0u, 1u, 3u, 4u, 5u}) CHECK(classes[k].emitted == glm::dvec3(0));
+    return classes[2].emitted;
+  };
+  const double expected = 16 * std::sqrt(0.5) / 3.14159265358979;  // of rho = 1 and E = 1
+  const glm::dvec3 found = unshot(sun);
+  CHECK(found.x == Approx(0.5 * 2 * expected));
+  CHECK(found.y == Approx(0.25 * 4 * expected));
+  CHECK(found.z == 0);
+
+  engine::SceneLight lamp;
+  lamp.kind = post::LightKind::Point;
+  lamp.position = {0, 2, 0};
+  // The two triangles' centres, (+-2/3, 0, -+2/3): E = I cos / d^2 = 2 I / d^3.
+  const double d = std::sqrt(4 + 8.0 / 9);
+  CHECK(unshot(lamp).x == Approx(0.5 * 16 * 2 / (d * d * d) / 3.14159265358979));
+  engine::SceneLight spot = lamp;
+  spot.kind = post::LightKind::Spot;
+  spot.direction = {0, 1, 0};
+  CHECK(unshot(spot) == glm::dvec3(0));
+
+  // A roof that hides one of the two centres from the sun: it lies 1 higher, and so 1 farther against the sun.
+  b.addQuad({-1.9f, 1, -0.4f}, {-1.4f, 1, -0.4f}, {-1.4f, 1, -0.9f}, {-1.9f, 1, -0.9f}, glm::vec3(0));
+  CHECK(unshot(sun).x == Approx(0.5 * 2 * expected / 2));
+}
+
+TEST_CASE("extended ambient: in a box whose floor the sun lights, the other walls get a fifth of what it sends") {
+  Builder b = room(glm::vec3(0), glm::vec3(0), glm::vec3(0));
+  b.scene.materials[2].baseColor = {0.5f, 0.5f, 0.5f, 1};
+  b.scene.bounds = {glm::dvec3(-2), glm::dvec3(2), false};
+  engine::SceneLight lamp;  // straight down through the lid, as it has no shadows
+  lamp.direction = {0, -1, 0};
+  lamp.color = glm::vec3(3.14159265f);
+  lamp.shadows = false;
+  const engine::BouncedLight direct(b.scene, {&lamp, 1}, true, {});
+  raster::Parallel parallel(2);
+  const auto in = engine::extendedAmbient(b.scene, std::nullopt, parallel, &direct);
+  REQUIRE(in.ok());
+  for (size_t k = 0; k < 6; ++k) CHECK((*in)[k].x == Approx(k == 2 ? 0 : 0.5 / 5).margin(1e-6));
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "obscura/engine/gltf.h"
+#include "obscura/engine/shadow_maps.h"
 #include "obscura/tests/gltf_builder.h"
 
 using namespace obscura::tests;
@@ -48,6 +49,9 @@ GltfBuilder sample() {
   b.addNode({{"camera", b.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}})}});
   b.addNode({{"extras", {{"obscura_implicit", GltfBuilder::Json::parse(R"({"type": "metaballs", "material": 0, "radius": 1,
     "balls": [{"center": [1, 2, 3], "radius": 1}, {"radius": 2}]})")}}}});
+  b.json["extensions"]["KHR_lights_punctual"]["lights"] = GltfBuilder::Json::parse(R"([{"type": "spot", "color": [1, 0.5, 0.25],
+    "intensity": 3, "range": 9, "spot": {"innerConeAngle": 0.2, "outerConeAngle": 0.5}}])");
+  b.addNode({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
   return b;
 }
 
@@ -86,6 +90,7 @@ void checkSound(const Scene& scene) {
     REQUIRE(material.heightMap.texture < int(scene.heightMaps.size()));
     REQUIRE((material.heightScale >= 0 && material.heightScale <= 1e15f));
   }
+  for (const auto& light : scene.lights) REQUIRE(obscura::engine::wrongLight(light) == nullptr);
   for (const auto& map : scene.heightMaps) {
     REQUIRE(map.view.heights.size() == size_t(map.view.width) * size_t(map.view.height));
     for (float h : map.view.heights) REQUIRE((h >= 0 && h <= 1));

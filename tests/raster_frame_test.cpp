@@ -6,6 +6,8 @@
 #include <xmmintrin.h>
 #endif
 
+#include <glm/geometric.hpp>
+
 #include "obscura/raster/parallel.h"
 #include "test_scene.h"
 
@@ -222,4 +224,28 @@ TEST_CASE("frame: misuse is refused and names the value") {
   mesh.indices[7] = kept;
   s.camera.zNear = -1;
   CHECK_THROWS_WITH(render(8, 8), Catch::Contains("zNear"));
+}
+
+TEST_CASE("frame: facet is the normal of the triangle's plane, whatever normals its vertices have") {
+  TestScene s;
+  s.materials.resize(1);
+  s.materials[0].doubleSided = true;
+  TestMesh& mesh = s.addMesh();
+  TestScene::addQuad(mesh, {-1, -1, 0.5f}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0.5f});
+  mesh.normals = {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}, {0, 1, 1}};
+  s.place(mesh);
+  s.camera = perspective(0.8, 1, 0.1);
+  s.camera.viewFromWorld = lookAt({1, 2, 3}, {0, 0, 0}, {0, 1, 0});
+  const GBuffer g = reference(s);
+  const glm::dvec3 expected = glm::dmat3(s.camera.viewFromWorld) * glm::normalize(glm::dvec3(0.25, 0, 1));
+  int seen = 0, wrong = 0;
+  for (int y = 0; y < g.height; ++y)
+    for (int x = 0; x < g.width; ++x) {
+      if (g.triangle.at(x, y) == kNoTriangle) continue;
+      ++seen;
+      const glm::dvec3 found(g.facet[0].at(x, y), g.facet[1].at(x, y), g.facet[2].at(x, y));
+      wrong += !(glm::dot(found, expected) > 1 - 1e-6);
+    }
+  CHECK(seen > 100);
+  CHECK(wrong == 0);
 }

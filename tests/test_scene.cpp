@@ -128,6 +128,7 @@ std::string firstDifference(const GBuffer& a, const GBuffer& b) {
   if (d.empty()) d = firstDifference("material", a.material, b.material);
   for (int c = 0; c < 3 && d.empty(); ++c) {
     d = firstDifference("normal", a.normal[c], b.normal[c]);
+    if (d.empty()) d = firstDifference("facet", a.facet[c], b.facet[c]);
     if (d.empty()) d = firstDifference("albedo", a.albedo[c], b.albedo[c]);
     if (d.empty()) d = firstDifference("emissive", a.emissive[c], b.emissive[c]);
     if (d.empty()) d = firstDifference("position", a.position[c], b.position[c]);

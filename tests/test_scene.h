@@ -66,10 +66,10 @@ class Random {
 TestScene soupScene(uint32_t seed);
 
 // Every plane of the first layer.
-constexpr raster::PlaneSet kAllPlanes{true, true, true, true, true, true, true, true, false, false, 0, false, true, true};
+constexpr raster::PlaneSet kAllPlanes{true, true, true, true, true, true, true, true, false, false, 0, false, true, true, true};
 
 // Those behind it as well, and depths alone. The separation is a tenth of a soup's size, so some layers are skipped.
-constexpr raster::PlaneSet kAllLayers{true, true, true, true, true, true, true, true, true, true, 0.6f, false, true, true};
+constexpr raster::PlaneSet kAllLayers{true, true, true, true, true, true, true, true, true, true, 0.6f, false, true, true, true};
 constexpr raster::PlaneSet kDepths{true, false, false, false, false, false, false, false, true, true, 0.6f};
 
 // Empty if equal, else the first difference: "albedo[1] differs at (3, 7): 0.5 (3f000000) and ...".
