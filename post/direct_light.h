@@ -18,7 +18,8 @@
 //       n' = n + t e, |e| = 1, changes the key there by at most r ((1 + t) / (|D| - t |V|) - 1 / |D|), as |n.xy| <= 1
 //   s / |D| (times k, perspective)   the point itself lies off the plane by s: its camera snapped the triangle to 1/256 pixel,
 //       which moves a plane by at most that part of a pixel's width there, and positions are rounded: 2^-20 of their size
-// t = 1/16. |D| is kept above 2 t |V|: what a light grazes within 7 degrees has a bias that no longer grows.
+// t = 1/16. What a light grazes at less than 7 degrees has the second term of 7 degrees, |D| = 2 t |V|, as no angle would be
+// enough; and |D| is never below |V| / 1024.
 #pragma once
 
 #include "obscura/post/linear_color.h"

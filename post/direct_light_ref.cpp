@@ -76,9 +76,9 @@ float litPart(const ShadowMap& map, const glm::vec3& q, const glm::vec3& n, floa
   constexpr float t = 1.0f / 16, snap = 1.0f / 256;
   const float reach = 1.5f * std::sqrt(p.xInverse * p.xInverse + p.yInverse * p.yInverse);
   const float D = p.perspective ? dot(n, q) : n.z, V = p.perspective ? std::sqrt(dot(q, q)) : 1;
-  const float size = std::max(std::fabs(D), 2 * t * V), k = p.perspective ? 1 / q.z : -q.z;
+  const float size = std::max(std::fabs(D), V / 1024), turning = std::max(size, 2 * t * V), k = p.perspective ? 1 / q.z : -q.z;
   const glm::vec2 g = glm::vec2(n.x * p.xInverse, n.y * p.yInverse) / (D < 0 ? -size : size);
-  const float bent = reach * t * (size + V) / (size * (size - t * V)), off = slack / size * (p.perspective ? k : 1);
+  const float bent = reach * t * (turning + V) / (turning * (turning - t * V)), off = slack / size * (p.perspective ? k : 1);
   const float key = k + ((std::fabs(g.x) + std::fabs(g.y)) * snap + (bent + off));
   const Taps u = tapsAt((p.perspective ? q.x / q.z : q.x) * p.xScale + p.xCenter, stored.width());
   const Taps v = tapsAt((p.perspective ? q.y / q.z : q.y) * p.yScale + p.yCenter, stored.height());

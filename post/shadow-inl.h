@@ -15,6 +15,7 @@ namespace obscura::post {
 namespace HWY_NAMESPACE {
 
 constexpr float kTurn = 1.0f / 16;   // t
+constexpr float kGrazing = 1.0f / 1024;
 constexpr float kSnap = 1.0f / 256;  // of a texel or pixel
 
 // How far a point may lie off the plane of its triangle: s.
@@ -40,15 +41,16 @@ HWY_INLINE PlaneInMap planeIn(const ShadowMap& map, const V3& q, const V3& n, VF
   const VF one = hn::Set(d, 1.0f), t = hn::Set(d, kTurn);
   const float reach = 1.5f * std::sqrt(map.projector.xInverse * map.projector.xInverse + map.projector.yInverse * map.projector.yInverse);
   const VF signedD = kPerspective ? dot(n, q) : n.z, v = kPerspective ? hn::Sqrt(dot(q, q)) : one;
-  const VF least = hn::Mul(hn::Set(d, 2 * kTurn), v), found = hn::Abs(signedD);
-  const VF size = hn::IfThenElse(hn::Gt(found, least), found, least), turned = hn::Mul(t, v);
+  const auto atLeast = [](VF x, VF least) HWY_ATTR { return hn::IfThenElse(hn::Gt(x, least), x, least); };
+  const VF size = atLeast(hn::Abs(signedD), hn::Mul(hn::Set(d, kGrazing), v));
+  const VF turning = atLeast(size, hn::Mul(hn::Set(d, 2 * kTurn), v)), turned = hn::Mul(t, v);
   const VF divisor = hn::IfThenElse(hn::Lt(signedD, hn::Zero(d)), hn::Neg(size), size);
   PlaneInMap out;
   out.perX = hn::Div(hn::Mul(n.x, hn::Set(d, map.projector.xInverse)), divisor);
   out.perY = hn::Div(hn::Mul(n.y, hn::Set(d, map.projector.yInverse)), divisor);
   out.key = kPerspective ? hn::Div(one, q.z) : hn::Neg(q.z);
   const VF snapped = hn::Mul(hn::Add(hn::Abs(out.perX), hn::Abs(out.perY)), hn::Set(d, kSnap));
-  const VF bent = hn::Div(hn::Mul(hn::Set(d, reach * kTurn), hn::Add(size, v)), hn::Mul(size, hn::Sub(size, turned)));
+  const VF bent = hn::Div(hn::Mul(hn::Set(d, reach * kTurn), hn::Add(turning, v)), hn::Mul(turning, hn::Sub(turning, turned)));
   VF off = hn::Div(slack, size);
   if (kPerspective) off = hn::Mul(off, out.key);
   out.key = hn::Add(out.key, hn::Add(snapped, hn::Add(bent, off)));

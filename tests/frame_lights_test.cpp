@@ -134,14 +134,16 @@ TEST_CASE("lights: threads, targets, tiles and skipping change no bit of a lit f
       engine::FrameSettings f;
       const engine::Scene s = litSoup(seed, f);
       if (seed == 15) f.transfer.albedo = post::TransferAlbedo::Radiance;
-      const auto expected = imagesOf(frameOf(s, f, {}, true));
+      const engine::Frame expected = frameOf(s, f, {}, true);
+      CHECK(expected.lightStatistics.shadowMaps > 3);
       int run = 0;
       for (raster::Target target : raster::supportedTargets())
         for (bool skip : {true, false}) {
           const int tile = 16 << run % 3, threads = 1 + run % 4;
           ++run;
           INFO("seed " << seed << " target " << raster::targetName(target) << " tile " << tile << " threads " << threads << " skip " << skip);
-          CHECK(imagesOf(frameOf(s, f, {threads, target, tile, skip})).back().bytes == expected.back().bytes);
+          const engine::Frame found = frameOf(s, f, {threads, target, tile, skip});
+          for (int c = 0; c < 3; ++c) CHECK(firstDifference("color", found.color.rgb[c], expected.color.rgb[c]) == "");
         }
     }
   });
