@@ -265,7 +265,7 @@ TEST_CASE("readme: docs/gltf.md lists the extensions and limits of the loader") 
       {"`instancedTriangles`", shownLimit(l.instancedTriangles, false)},
       {"`instances`", shownLimit(l.instances, false)},
       {"`geometryBytes`", shownLimit(l.geometryBytes, true)}, {"`zeroElements`", shownLimit(l.zeroElements, false)},
-      {"`nodeDepth`", shownLimit(l.nodeDepth, false)}, {"`textureSize`", shownLimit(l.textureSize, false)},
+      {"`lights`", shownLimit(l.lights, false)}, {"`nodeDepth`", shownLimit(l.nodeDepth, false)}, {"`textureSize`", shownLimit(l.textureSize, false)},
       {"`textureBytes`", shownLimit(l.textureBytes, true)}};
   std::vector<Lines> shown;
   for (const Lines& row : tableOf(document, "limit")) shown.push_back({row[0], row[1]});
