@@ -10,13 +10,13 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "obscura/post/brdf-inl.h"
 #include "obscura/post/shadow-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace obscura::post {
 namespace HWY_NAMESPACE {
 
-constexpr float kPerPi = 0.318309886f;
 constexpr int kBlockWidth = 64, kBlockHeight = 8;  // pixels that share the list of lights that may reach them
 
 // Nearest and farthest depth that is seen in a block.
@@ -59,39 +59,57 @@ HWY_INLINE void forBlocks(const DirectLightInput& in, raster::Span<const Punctua
     }
 }
 
-HWY_INLINE V3 addLight(const DirectLightInput& in, const PunctualLight& light, const Points& at, const V3& n, int x, int y, const V3& f, const V3& sum) {
+template <Brdf kBrdf>
+HWY_INLINE V3 addLight(const DirectLightInput& in, const PunctualLight& light, const Points& at, const V3& n, int x, int y,
+                       const Reflection<kBrdf>& surface, const V3& sum) {
   const DF d;
   const Arriving a = arriving(light, at, n);
   if (hn::AllFalse(d, a.lit)) return sum;
   VF weight = a.amount;
   if (light.maps > 0)
     weight = hn::Mul(weight, visiblePart(light, a.lit, a.q, load3(in.g->facet, x, y), offPlane(light, in.projector, at)));
-  weight = hn::IfThenElseZero(a.lit, weight);
-  const auto reflected = [&](VF of, float color) HWY_ATTR { return hn::Mul(of, hn::Mul(hn::Set(d, color), weight)); };
+  const V3 f = surface.towards(a.toLight, a.cosine);
+  const auto reflected = [&](VF of, float color) HWY_ATTR {
+    return hn::IfThenElseZero(a.lit, hn::Mul(of, hn::Mul(hn::Set(d, color), weight)));
+  };
   return {hn::Add(sum.x, reflected(f.x, light.color.x)), hn::Add(sum.y, reflected(f.y, light.color.y)),
           hn::Add(sum.z, reflected(f.z, light.color.z))};
 }
 
-void DirectLight(const DirectLightInput& in, int y0, int y1, LinearColor& out) {
+template <Brdf kBrdf>
+void lightRows(const DirectLightInput& in, int y0, int y1, LinearColor& out) {
   const DF d;
-  const V3 none{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-  const VF perPi = hn::Set(d, kPerPi);
+  const VF zero = hn::Zero(d);
+  const raster::GBuffer& g = *in.g;
+  const ViewDirections directions(in.projector);
   forBlocks(in, in.lights, y0, y1, [&](int x0, int x1, int top, int bottom, const std::vector<const PunctualLight*>& lights) HWY_ATTR {
     if (lights.empty() && in.add) return;
     for (int y = top; y < bottom; ++y)
       for (int x = x0; x < x1; x += int(hn::Lanes(d))) {
-        V3 sum = in.add ? load3(out.rgb, x, y) : none;
-        if (!lights.empty()) {
-          const Points at = pointsAt(in.g->depth, in.projector, x, y);
-          const V3 n = load3(in.g->normal, x, y), albedo = load3(in.g->albedo, x, y);
-          const V3 f{hn::Mul(albedo.x, perPi), hn::Mul(albedo.y, perPi), hn::Mul(albedo.z, perPi)};
-          for (const PunctualLight* light : lights) sum = addLight(in, *light, at, n, x, y, f, sum);
+        V3 sum = in.add ? load3(out.rgb, x, y) : V3{zero, zero, zero};
+        const Points at = pointsAt(g.depth, in.projector, x, y);
+        if (!lights.empty() && !hn::AllFalse(d, at.seen)) {
+          const V3 n = load3(g.normal, x, y);
+          // What the padding of rows holds must not look anything up.
+          const VF metallic = isGlossy(kBrdf) ? hn::IfThenElseZero(at.seen, hn::LoadU(d, g.metallic.row(y) + x)) : zero;
+          const VF roughness = isGlossy(kBrdf) ? hn::IfThenElseZero(at.seen, hn::LoadU(d, g.roughness.row(y) + x)) : zero;
+          const Reflection<kBrdf> surface(load3(g.albedo, x, y), metallic, roughness, n, directions.at(x, y));
+          for (const PunctualLight* light : lights) sum = addLight(in, *light, at, n, x, y, surface, sum);
         }
         hn::StoreU(sum.x, d, out.rgb[0].row(y) + x);
         hn::StoreU(sum.y, d, out.rgb[1].row(y) + x);
         hn::StoreU(sum.z, d, out.rgb[2].row(y) + x);
       }
   });
+}
+
+void DirectLight(const DirectLightInput& in, int y0, int y1, LinearColor& out) {
+  switch (in.brdf) {
+    case Brdf::Lambert: return lightRows<Brdf::Lambert>(in, y0, y1, out);
+    case Brdf::Gltf: return lightRows<Brdf::Gltf>(in, y0, y1, out);
+    case Brdf::BlinnPhong: return lightRows<Brdf::BlinnPhong>(in, y0, y1, out);
+    case Brdf::BlinnPhongThresholded: return lightRows<Brdf::BlinnPhongThresholded>(in, y0, y1, out);
+  }
 }
 
 uint32_t MapsReached(const DirectLightInput& in, const PunctualLight& light, int y0, int y1) {

@@ -1,8 +1,8 @@
-// In:  depth, normals, albedo; lights and their shadow maps.
+// In:  depth, normals, albedo, metallic and roughness; lights and their shadow maps.
 // Out: linear colour: the light of these lights that is reflected once towards the eye, sum_k f E_k max(0, n . l_k).
 //
-// Units and falloff are those of KHR_lights_punctual. E of a light at the distance d is its colour times the falloff; the
-// BRDF is Lambert's, f = albedo / pi: a white surface that a directional light of pi lux meets squarely has radiance 1.
+// Units and falloff are those of KHR_lights_punctual. E of a light at the distance d is its colour times the falloff; f is
+// that of brdf.h. A white Lambertian surface that a directional light of pi lux meets squarely has radiance 1.
 //
 // Shadows: the light's part that arrives is the part of a square of 2 x 2 texels about the point in the light's map in which
 // nothing nearer is stored (percentage-closer filtering, Reeves et al. 1987): 3 x 3 texels, by how much of each lies in the
@@ -22,6 +22,7 @@
 // enough; and |D| is never below |V| / 1024.
 #pragma once
 
+#include "obscura/post/brdf.h"
 #include "obscura/post/linear_color.h"
 #include "obscura/post/punctual_light.h"
 #include "obscura/raster/gbuffer.h"
@@ -31,9 +32,11 @@
 namespace obscura::post {
 
 struct DirectLightInput {
-  const raster::GBuffer* g = nullptr;  // depth, normal, albedo; facet where there are shadow maps
+  // Depth, normal, albedo; facet where there are shadow maps; metallic and roughness where isGlossy(brdf).
+  const raster::GBuffer* g = nullptr;
   Projector projector;                 // of the camera
   raster::Span<const PunctualLight> lights;
+  Brdf brdf = Brdf::Lambert;
   bool skip = true;                    // leave out lights whose range or cone reaches nothing of a block; changes no bit
   bool add = false;                    // to what `out` holds, else from 0
 };

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "obscura/post/brdf_ref.h"
 #include "obscura/post/direct_light.h"
 #include "obscura/raster/float_environment.h"
 
@@ -28,11 +29,18 @@ glm::vec3 positionAt(const Projector& p, int x, int y, float depth) {
 
 bool isSeen(float depth) { return depth < std::numeric_limits<float>::infinity(); }
 
+// Unit, towards the light.
+glm::vec3 directionTo(const PunctualLight& light, const glm::vec3& p) {
+  if (light.kind == LightKind::Directional) return light.place;
+  const glm::vec3 way = light.place - p;
+  return way * (1 / std::sqrt(dot(way, way)));
+}
+
 // Falloff times cosine; 0: the light does not reach the point.
-float arrives(const PunctualLight& light, const glm::vec3& p, const glm::vec3& n) {
-  if (light.kind == LightKind::Directional) return std::max(dot(n, light.place), 0.0f);
-  const glm::vec3 way = light.place - p, q = lightSpace(light, p);
-  const float cosine = dot(n, way * (1 / std::sqrt(dot(way, way)))), square = dot(q, q);
+float arrives(const PunctualLight& light, const glm::vec3& p, float cosine) {
+  if (light.kind == LightKind::Directional) return std::max(cosine, 0.0f);
+  const glm::vec3 q = lightSpace(light, p);
+  const float square = dot(q, q);
   const float ofRange = square * (light.range > 0 ? 1 / (light.range * light.range) : 0), window = 1 - ofRange * ofRange;
   if (!(cosine > 0 && window > 0 && square > 1e-30f)) return 0;
   float falloff = std::min(window / square, 1e15f);
@@ -120,10 +128,12 @@ void directLightRef(const DirectLightInput& in, int y0, int y1, LinearColor& out
       glm::vec3 sum = in.add ? read(out.rgb, x, y) : glm::vec3(0);
       if (isSeen(depth)) {
         const glm::vec3 p = positionAt(in.projector, x, y, depth), n = read(in.g->normal, x, y);
-        const glm::vec3 f = read(in.g->albedo, x, y) * 0.318309886f;
+        ref::Surface surface{read(in.g->albedo, x, y), 0, 1, n, ref::viewDirection(in.projector, x, y)};
+        if (isGlossy(in.brdf)) surface.metallic = in.g->metallic.at(x, y), surface.roughness = in.g->roughness.at(x, y);
         for (const PunctualLight& light : in.lights) {
-          const float amount = arrives(light, p, n);
-          if (amount > 0) sum += f * (light.color * (amount * visiblePart(in, light, x, y, p)));
+          const glm::vec3 l = directionTo(light, p);
+          const float nl = dot(n, l), amount = arrives(light, p, nl);
+          if (amount > 0) sum += ref::reflection(in.brdf, surface, l, nl) * (light.color * (amount * visiblePart(in, light, x, y, p)));
         }
       }
       for (int c = 0; c < 3; ++c) out.rgb[c].at(x, y) = sum[c];
@@ -132,7 +142,7 @@ void directLightRef(const DirectLightInput& in, int y0, int y1, LinearColor& out
 
 float arrivingAt(const PunctualLight& light, const glm::vec3& p, const glm::vec3& n) {
   const raster::FloatEnvironment environment;
-  const float amount = arrives(light, p, n);
+  const float amount = arrives(light, p, dot(n, directionTo(light, p)));
   return amount > 0 ? amount * visiblePart(light, p, n, 0) : 0;
 }
 
@@ -144,7 +154,8 @@ uint32_t mapsReachedRef(const DirectLightInput& in, const PunctualLight& light, 
       const float depth = in.g->depth.at(x, y);
       if (!isSeen(depth)) continue;
       const glm::vec3 p = positionAt(in.projector, x, y, depth);
-      if (arrives(light, p, read(in.g->normal, x, y)) > 0) found |= 1u << mapOf(light, lightSpace(light, p));
+      const float nl = dot(read(in.g->normal, x, y), directionTo(light, p));
+      if (arrives(light, p, nl) > 0) found |= 1u << mapOf(light, lightSpace(light, p));
     }
   return found;
 }

@@ -58,6 +58,7 @@ HWY_INLINE Points pointsAt(const raster::Plane<float>& plane, const Projector& p
 
 struct Arriving {
   MF lit;
+  VF cosine;   // n . l
   VF amount;   // falloff times cosine, >= 0
   V3 toLight;  // unit, camera space
   V3 q;        // the point in light space; of directional lights without maps nothing
@@ -66,9 +67,9 @@ struct Arriving {
 HWY_INLINE Arriving arriving(const PunctualLight& light, const Points& at, const V3& n) {
   const DF d;
   const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  Arriving a{at.seen, zero, set3(light.place), at.p};
+  Arriving a{at.seen, zero, zero, set3(light.place), at.p};
   if (light.kind == LightKind::Directional) {
-    a.amount = dot(n, a.toLight);
+    a.cosine = a.amount = dot(n, a.toLight);
     a.lit = hn::And(a.lit, hn::Gt(a.amount, zero));
     if (light.maps > 0) a.q = toLightSpace(light, at.p);
     return a;
@@ -77,10 +78,11 @@ HWY_INLINE Arriving arriving(const PunctualLight& light, const Points& at, const
   const V3 way{hn::Sub(a.toLight.x, at.p.x), hn::Sub(a.toLight.y, at.p.y), hn::Sub(a.toLight.z, at.p.z)};
   const VF perLength = hn::Div(one, hn::Sqrt(dot(way, way)));
   a.toLight = {hn::Mul(way.x, perLength), hn::Mul(way.y, perLength), hn::Mul(way.z, perLength)};
-  const VF cosine = dot(n, a.toLight), square = dot(a.q, a.q);
+  a.cosine = dot(n, a.toLight);
+  const VF square = dot(a.q, a.q);
   const VF ofRange = hn::Mul(square, hn::Set(d, light.range > 0 ? 1 / (light.range * light.range) : 0));
   const VF window = hn::Sub(one, hn::Mul(ofRange, ofRange));
-  a.lit = hn::And(hn::And(a.lit, hn::Gt(cosine, zero)), hn::And(hn::Gt(window, zero), hn::Gt(square, hn::Set(d, 1e-30f))));
+  a.lit = hn::And(hn::And(a.lit, hn::Gt(a.cosine, zero)), hn::And(hn::Gt(window, zero), hn::Gt(square, hn::Set(d, 1e-30f))));
   VF falloff = hn::Min(hn::Div(window, square), hn::Set(d, 1e15f));
   if (light.kind == LightKind::Spot) {
     const VF toAxis = hn::Div(dot(a.q, set3(light.axis)), hn::Sqrt(square));
@@ -89,7 +91,7 @@ HWY_INLINE Arriving arriving(const PunctualLight& light, const Points& at, const
     const VF inside = hn::Min(s, one);
     falloff = hn::Mul(falloff, hn::Mul(inside, inside));
   }
-  a.amount = hn::Mul(falloff, cosine);
+  a.amount = hn::Mul(falloff, a.cosine);
   a.lit = hn::And(a.lit, hn::Gt(a.amount, zero));  // it may underflow
   return a;
 }

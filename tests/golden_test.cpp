@@ -10,6 +10,7 @@
 #include <sstream>
 #include <tuple>
 
+#include "obscura/apps/demo_lights.h"
 #include "obscura/apps/demo_scene.h"
 #include "obscura/apps/demo_surfaces.h"
 #include "obscura/apps/pictures.h"
@@ -159,6 +160,16 @@ TEST_CASE("golden: implicit surfaces on a floor, sampled by dealt points, filter
   REQUIRE(light.ok());
   s.ambientDirections = *light;
   checkGolden("implicit", s, scene);
+}
+
+TEST_CASE("golden: a courtyard with a sun, a lamp and a spot that cast shadows, by stored radiance") {
+  const engine::Scene scene = tests::sceneOfGlb(apps::makeLightsScene());
+  engine::FrameSettings s = frameOf(160, 120, scene);
+  s.ambientLight = {0.12f, 0.15f, 0.24f};
+  s.background = {0.02f, 0.035f, 0.08f};
+  s.transfer.albedo = post::TransferAlbedo::Radiance;
+  s.shadowSize = 512;
+  checkGolden("lights", s, scene);
 }
 
 TEST_CASE("golden: the demo scene with 4 x 4 sub-pixels a pixel") {

@@ -99,6 +99,7 @@ TEST_CASE("direct light: every target equals the scalar twin, with and without s
     for (int k = random.integer(1, 6); k > 0; --k) lights.push_back(anyLight(random, map));
     post::DirectLightInput in{&g, post::makeProjector(s.camera, s.width, s.height), lights};
     in.add = seed % 3 == 0;
+    in.brdf = post::Brdf(seed % 4);
     post::LinearColor expected = filled(s.width, s.height, 0.25f);
     directLightRef(in, 0, s.height, expected);
     for (raster::Target target : raster::supportedTargets())
