@@ -24,7 +24,7 @@ GBuffer cut(const GBuffer& g, const Window& w) {
   out.triangle = cut(g.triangle, w), out.instance = cut(g.instance, w), out.material = cut(g.material, w);
   out.metallic = cut(g.metallic, w), out.roughness = cut(g.roughness, w);
   for (int c = 0; c < 3; ++c) {
-    out.normal[c] = cut(g.normal[c], w), out.albedo[c] = cut(g.albedo[c], w);
+    out.normal[c] = cut(g.normal[c], w), out.facet[c] = cut(g.facet[c], w), out.albedo[c] = cut(g.albedo[c], w);
     out.emissive[c] = cut(g.emissive[c], w), out.position[c] = cut(g.position[c], w);
   }
   return out;
