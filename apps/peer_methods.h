@@ -60,7 +60,7 @@ struct PeerSettings {
 //   Hbao, Gtao  cosine and sine of the direction in the image, and where in its steps the points lie, in [0, 1)
 std::vector<glm::vec3> peerPoints(const PeerSettings& peer, const post::AmbientSettings& settings);
 
-// Rows y0 ... y1 - 1. Of the settings samples, radius and silhouetteBound count; the G-buffer is all that is known, also around a crop.
+// Rows y0 ... y1 - 1. Where the G-buffer makes no number of it, nothing is open. Of the settings samples, radius and silhouetteBound count; the G-buffer is all that is known, also around a crop.
 void peerOcclusion(const PeerSettings& peer, const post::TransferInput& in, int y0, int y1, post::TransferSums& out,
                    raster::Target target);
 void peerOcclusionRef(const PeerSettings& peer, const post::TransferInput& in, int y0, int y1, post::TransferSums& out);  // the twin

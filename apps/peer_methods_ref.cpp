@@ -158,7 +158,9 @@ void peerOcclusionRef(const PeerSettings& peer, const post::TransferInput& in, i
   for (int y = y0; y < y1; ++y)
     for (int x = 0; x < in.g->width; ++x) {
       const bool seen = in.g->depth.at(x, y) < std::numeric_limits<float>::infinity();
-      const float value = out.numerator.at(x, y) = seen ? Twin(peer, in, x, y).open() : n;
+      float value = seen ? Twin(peer, in, x, y).open() : n;
+      if (!(value == value)) value = 0;
+      out.numerator.at(x, y) = value;
       uint8_t& open = out.open.at(x / post::kSegment, y);
       open = (x % post::kSegment == 0 || open) && value == n;
     }

@@ -107,6 +107,7 @@ void peerRows(const PeerSettings& peer, const post::TransferInput& in, int y0, i
       const MF seen = hn::And(hn::Lt(z, infinity), inside);
       VF value = all;
       if (!hn::AllFalse(d, seen)) value = method.open(placed<kPerspective>(in, x, y, hn::IfThenElse(seen, z, one)), x);
+      value = hn::IfThenElse(hn::Eq(value, value), value, hn::Zero(d));  // of what is no normal
       value = hn::IfThenElse(seen, value, all);
       hn::StoreU(value, d, out.numerator.row(y) + x);
       uint8_t& open = out.open.at(x / post::kSegment, y);
