@@ -60,7 +60,7 @@ TEST_CASE("shadows: on the demo scene, of the pixels that face the sun, maps and
       differ += blocked != dark;
       mapsAlone += dark && !blocked;
     }
-  WARN(facing << " pixels face the sun, " << shadowed << " in shadow by rays; " << differ << " differ ("
+  INFO(facing << " pixels face the sun, " << shadowed << " in shadow by rays; " << differ << " differ ("
               << 100.0 * differ / facing << " %), " << mapsAlone << " of them dark by the map alone");
   CHECK(facing > 20000);
   CHECK(shadowed > 2000);
