@@ -56,6 +56,7 @@ FigureContent makeHarbourFigure(const FigureSettings& settings);
 FigureContent makeWhiteRoomFigure(const FigureSettings& settings);
 FigureContent makeSnowFigure(const FigureSettings& settings);
 FigureContent makeExtendedFigure(const FigureSettings& settings);
+FigureContent makeHighlightFigure(const FigureSettings& settings);
 FigureContent makeProjectionsFigure(const FigureSettings& settings);
 
 }  // namespace obscura::apps

@@ -2,7 +2,7 @@
 #include "obscura/apps/figure_shapes.h"
 #include "obscura/apps/figure_stage.h"
 #include "obscura/apps/glb_builder.h"
-#include "obscura/engine/ambient_light.h"
+#include "obscura/engine/bounced_light.h"
 #include "obscura/engine/extended_ambient.h"
 
 namespace obscura::apps {
@@ -11,6 +11,11 @@ namespace {
 using engine::Frame;
 using glm::dvec3;
 
+// A rectangle of 128 triangles, so that each has the lamp's light of its own place.
+GlbMesh makeWall(const dvec3 (&corners)[4]) {
+  return makeSurface("wall", 8, 8, false, [&](double u, double v) { return mix(mix(corners[3], corners[2], u), mix(corners[0], corners[1], u), v); });
+}
+
 // A grey cubic room without its near wall's back: red on the left, green on the right, a white sphere in the middle, a square
 // lamp at the ceiling.
 GlbScene makeRoom() {
@@ -18,7 +23,7 @@ GlbScene makeRoom() {
   const int grey = b.addMaterial("grey", dvec3(0.45)), red = b.addMaterial("red", {0.75, 0.05, 0.06});
   const int green = b.addMaterial("green", {0.05, 0.75, 0.06}), white = b.addMaterial("white", dvec3(0.9));
   const int lamp = b.addMaterial("lamp", dvec3(0));
-  b.material(lamp).emissive = dvec3(14);
+  b.material(lamp).emissive = dvec3(1);
   const struct {
     const char* name;
     int material;
@@ -31,23 +36,32 @@ GlbScene makeRoom() {
                 {"front wall", grey, {{2, -2, 2}, {-2, -2, 2}, {-2, 2, 2}, {2, 2, 2}}},  // turned away from the eye, unseen
                 {"lamp", lamp, {{-0.6, 1.99, -0.6}, {0.6, 1.99, -0.6}, {0.6, 1.99, 0.6}, {-0.6, 1.99, 0.6}}}};
   for (const auto& wall : kWalls)
-    b.addGroup(wall.name, b.addMesh(makeQuad(wall.corners[0], wall.corners[1], wall.corners[2], wall.corners[3]), wall.material));
-  b.addGroup("sphere", b.addMesh(makeBall(0.9, 96), white));
+    b.addGroup(wall.name, b.addMesh(makeWall(wall.corners), wall.material));
+  b.addGroup("sphere", b.addMesh(makeBall(0.8, 96), white));
   b.lookAt({0, 0.1, 5.7}, {0, 0.0, 0}, 0.80);
   return std::move(b.scene);
 }
 
-// What the surfaces send each other after the lamp's light has been reflected once, as if it arrived everywhere alike: the
-// unshot power of a progressive solution, whose direct part is not the ambient term's.
-std::array<glm::vec3, 6> reflectedLight(const engine::Scene& scene, int threads) {
-  raster::Parallel parallel(threads);
-  const std::array<dvec3, 6> cube = engine::cubeDirections();
-  std::vector<engine::AmbientClass> classes = engine::ambientClasses(scene, {cube.begin(), cube.end()}, parallel);
-  for (engine::AmbientClass& c : classes) c.emitted = dvec3(0);
-  const std::vector<glm::vec3> incoming = engine::incomingLight(classes, dvec3(1));
-  std::array<glm::vec3, 6> reflected;
-  for (size_t k = 0; k < 6; ++k) reflected[k] = incoming[k] - glm::vec3(1);
-  return reflected;
+// Just below the lamp, in its place.
+engine::SceneLight lampLight() {
+  engine::SceneLight light;
+  light.kind = post::LightKind::Spot;
+  light.position = {0, 1.9, 0};
+  light.direction = {0, -1, 0};
+  light.innerCone = 0.9;
+  light.outerCone = 1.4;
+  light.color = glm::vec3(25);  // candela
+  return light;
+}
+
+// The light that the surfaces send each other, from what the lamp's light leaves on them at its first reflection.
+std::array<glm::vec3, 6> reflectedLight(const engine::Scene& scene, const FigureSettings& figure) {
+  const std::vector<engine::SceneLight> lights = {lampLight()};
+  const engine::BouncedLight direct(scene, lights, true, figure.raster);
+  raster::Parallel parallel(figure.raster.threads);
+  const auto colors = engine::extendedAmbient(scene, std::nullopt, parallel, &direct);
+  if (!colors) throw FigureError(colors.error().text());
+  return *colors;
 }
 
 struct Side {
@@ -67,8 +81,8 @@ FigureContent makeExtendedFigure(const FigureSettings& figure) {
   FigureStage stage(makeRoom(), figure, 0.9);
   engine::FrameSettings& s = stage.settings;
   s.transfer.samples = 32;
-  s.tone.exposure = 0.6f;
-  const std::array<glm::vec3, 6> colors = reflectedLight(stage.scene(), figure.raster.threads);
+  s.tone.curve = post::ToneCurve::Neutral;
+  const std::array<glm::vec3, 6> colors = reflectedLight(stage.scene(), figure);
   glm::vec3 mean(0);
   for (const glm::vec3& c : colors) mean += c / 6.0f;
   const struct {
@@ -77,8 +91,8 @@ FigureContent makeExtendedFigure(const FigureSettings& figure) {
     post::Occlusion occlusion;
   } kPanels[] = {{"constant ambient term", false, post::Occlusion::None},
                  {"extended ambient term", true, post::Occlusion::None},
-                 {"constant ambient term x W", false, post::Occlusion::Transfer},
-                 {"extended ambient term x W", true, post::Occlusion::Transfer}};
+                 {"lamp + constant x W", false, post::Occlusion::Transfer},
+                 {"lamp + extended x W", true, post::Occlusion::Transfer}};
   FigureContent out;
   out.columns = 2;
   out.numbers.columns = {"white sphere", "left red", "left green", "right red", "right green"};
@@ -87,6 +101,9 @@ FigureContent makeExtendedFigure(const FigureSettings& figure) {
     s.ambientLight = glm::vec3((mean.x + mean.y + mean.z) / 3);  // as bright, grey
     if (panel.extended) s.ambientDirections = colors, s.ambientLight = glm::vec3(1);
     s.ambient = panel.occlusion;
+    s.lights.clear();
+    s.tone.exposure = panel.occlusion == post::Occlusion::None ? 2.5f : 1.3f;
+    if (panel.occlusion == post::Occlusion::Transfer) s.lights = {lampLight()};
     const Frame f = stage.render(s);
     const Side left = sideOf(f, stage.scene(), -1), right = sideOf(f, stage.scene(), 1);
     out.panels.push_back({panel.label, colorPicture(f)});

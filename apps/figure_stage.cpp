@@ -94,6 +94,20 @@ double leastOf(const Plane<float>& plane, const PixelTest& test) {
   return count > 0 ? least : 0;
 }
 
+double largestOf(const Plane<float>& plane, const PixelTest& test) {
+  double largest = 0;
+  forPixels(plane, test, [&](int x, int y) { largest = std::max(largest, double(plane.at(x, y))); });
+  return largest;
+}
+
+double localContrastOf(const Plane<float>& plane, const PixelTest& test) {
+  double sum = 0;
+  const auto both = [&](int x, int y) { return x > 0 && test(x, y) && test(x - 1, y); };
+  const size_t count = forPixels(plane, both, [&](int x, int y) { sum += std::fabs(double(plane.at(x, y)) - double(plane.at(x - 1, y))); });
+  const double mean = meanOf(plane, test);
+  return count > 0 && mean > 0 ? sum / double(count) / mean : 0;
+}
+
 double share(const Plane<float>& plane, const PixelTest& test) {
   const size_t count = forPixels(plane, test, [](int, int) {});
   return double(count) / (double(plane.width()) * plane.height());

@@ -26,6 +26,7 @@ class FigureStage {
   // linear membership.
   engine::FrameSettings settings;
   const engine::Scene& scene() const { return scene_; }
+  engine::Scene& scene() { return scene_; }
 
   // With depth, normals, albedo, O, W, instances, colour and its display.
   engine::Frame render(const engine::FrameSettings& frame) const;
@@ -49,6 +50,9 @@ double meanOf(const raster::Plane<float>& plane, const PixelTest& test);
 double deviationOf(const raster::Plane<float>& plane, const PixelTest& test);  // standard deviation
 double rmseOf(const raster::Plane<float>& a, const raster::Plane<float>& b, const PixelTest& test);
 double leastOf(const raster::Plane<float>& plane, const PixelTest& test);
+double largestOf(const raster::Plane<float>& plane, const PixelTest& test);
+// Mean step between neighbours in a row that both pass, over the mean: how much detail there is.
+double localContrastOf(const raster::Plane<float>& plane, const PixelTest& test);
 double share(const raster::Plane<float>& plane, const PixelTest& test);  // of all pixels
 
 // Where something is seen; where it is this node's mesh.

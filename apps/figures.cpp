@@ -62,8 +62,14 @@ const std::vector<Figure>& allFigures() {
       {"extended", "The extended ambient term",
        "Castro, Neumann, Sbert, Extended Ambient Term: figures 1 and 2",
        "A grey room with a red and a green wall, a white sphere and a square lamp. With the constant term the sphere is a flat disc. With the extended one its left side, "
-       "which faces the red wall, turns reddish, the right one greenish, with a smooth transition. W adds the occlusion that both lack.",
+       "which faces the red wall, turns reddish, the right one greenish, with a smooth transition. Below with the lamp's own light and shadows, and with W, which adds the "
+       "occlusion that both terms lack.",
        makeExtendedFigure},
+      {"highlight", "Thresholded and plain highlight",
+       "Akenine-Moller, Haines, Hoffman, Real-Time Rendering, 3rd edition: figure 8.7",
+       "Smooth, glossy things under two lights. Right, the Blinn-Phong highlight fades out. Left, its value is thresholded: an even spot with a sharp edge, as the mirror "
+       "image of a round lamp would be.",
+       makeHighlightFigure},
       {"projections", "Four projections of one environment",
        "Akenine-Moller, Haines, Hoffman, Real-Time Rendering, 3rd edition: section 8.4",
        "The same sky in the four ways in which a texture can hold all directions: longitude and latitude; the picture of a mirror ball, whose rim shows all that is behind it; "
