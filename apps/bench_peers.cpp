@@ -37,7 +37,7 @@ Difference differenceOf(const engine::Frame& frame, const std::vector<uint8_t>& 
   for (int y = 0; y < frame.height; ++y)
     for (int x = 0; x < frame.width; ++x)
       for (int c = 0; c < 3; ++c) {
-        const double v = std::min(double(frame.color.rgb[c].at(x, y)), 1.0);
+        const double v = std::min(double(frame.g.albedo[c].at(x, y)) * double(frame.transfer.w[c].at(x, y)), 1.0);
         const double by = theirs[(size_t(y) * size_t(frame.width) + size_t(x)) * 4 + size_t(c)] / 255.0 - v;
         d.rms += by * by, d.mean += by, d.far += std::fabs(by) > 2 / 255.0, d.most = std::max(d.most, std::fabs(by));
       }
@@ -46,9 +46,10 @@ Difference differenceOf(const engine::Frame& frame, const std::vector<uint8_t>& 
   return d;
 }
 
-// Leaves what both draw: base colours, their textures, alpha masks, triangles.
+// Leaves what both draw: base colours, their textures, alpha masks, triangles; no lights.
 void simplify(engine::Scene& scene) {
   scene.implicits.clear();
+  scene.lights.clear();
   for (raster::Material& m : scene.materials) {
     m.normalMap.texture = m.emissiveMap.texture = m.heightMap.texture = -1;
     m.emissive = glm::vec3(0);
@@ -77,6 +78,8 @@ int PeersBenchmark::run() {
   if (!resolved) return fail(resolved.error());
   if (resolved->frame.camera.projection != raster::Projection::Perspective)
     return fail({engine::ErrorCode::Usage, "peers are compared through a perspective camera", scene, ""});
+  resolved->frame.aovs = {engine::Aov::Color, engine::Aov::Albedo, engine::Aov::Transfer};
+  resolved->frame.lights.clear();
   const int threads = resolved->raster.threads > 0 ? resolved->raster.threads : int(std::max(1u, std::thread::hardware_concurrency()));
   GlFrame gl(openGl(threads), *loaded, resolved->frame);
   engine::Renderer renderer(resolved->raster);

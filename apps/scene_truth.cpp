@@ -29,7 +29,8 @@ void TruthOptions::addTo(CLI::App& app) {
 void removeEstimatorOptions(CLI::App& app, FrameOptions& options, const std::vector<std::string>& kept) {
   options.displacement = false;
   const auto concerned = [](const CLI::Option* o) {
-    return o->get_group() == "Ambient transfer" || o->get_group() == "Environment" || o->get_group().rfind("Display", 0) == 0;
+    return o->get_group() == "Ambient transfer" || o->get_group() == "Environment" || o->get_group() == "Lights" ||
+           o->get_group().rfind("Display", 0) == 0;
   };
   for (const CLI::Option* o : app.get_options(concerned))
     if (std::find(kept.begin(), kept.end(), o->get_name()) == kept.end()) app.remove_option(app.get_option(o->get_name()));
