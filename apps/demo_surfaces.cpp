@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "obscura/apps/demo_random.h"
 #include "obscura/apps/demo_shapes.h"
@@ -116,6 +117,41 @@ GlbScene makeReliefScene() {
   stone.mesh = 1;
   stone.scale = dvec3(0.5);
   lookAt(scene, {1.2, 1.5, 4.6}, {0, 0, 0.2});
+  return scene;
+}
+
+GlbScene makeMaterialsScene() {
+  GlbScene scene;
+  GlbTexture tiles;  // two kinds of stone, polished and rough, and brass between them
+  tiles.name = "tiles";
+  tiles.width = tiles.height = 64;
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x) {
+      const bool joint = x % 32 < 2 || y % 32 < 2, polished = (x / 32 + y / 32) % 2 == 0;
+      const uint8_t metallic = joint ? 255 : 0, roughness = uint8_t(joint ? 80 : polished ? 20 : 230);
+      tiles.rgba.insert(tiles.rgba.end(), {0, roughness, metallic, 255});
+    }
+  scene.textures.push_back(std::move(tiles));
+  scene.meshes = {makeFloor(4)};
+  for (glm::vec2& uv : scene.meshes[0].uvs) uv *= 4.0f;
+  scene.meshes[0].material = addMaterial(scene, "tiles", {0.55, 0.45, 0.3});
+  scene.materials[0].metallic = 1, scene.materials[0].gloss = 0;
+  addRoot(scene, "floor", dvec3(0)).mesh = 0;
+  const struct {
+    const char* name;
+    double metallic;
+    dvec3 color;
+  } rows[] = {{"gold", 1, {1, 0.77, 0.34}}, {"half", 0.5, {0.75, 0.2, 0.15}}, {"lacquer", 0, {0.05, 0.2, 0.6}}, {"black", 0, dvec3(0)}};
+  for (int row = 0; row < 4; ++row)
+    for (int k = 0; k < 6; ++k) {
+      const std::string name = rows[row].name + std::to_string(k);
+      const int material = addMaterial(scene, name.c_str(), rows[row].color);
+      scene.materials[size_t(material)].metallic = rows[row].metallic;
+      scene.materials[size_t(material)].roughness = 0.2 * k;
+      addRoot(scene, name.c_str(), {1.1 * k - 2.75, 0.48, 1.15 * row - 1.9}).extras =
+          R"({"obscura_implicit": {"type": "sphere", "radius": 0.48, "material": )" + std::to_string(material) + "}}";
+    }
+  lookAt(scene, {0.6, 8, 10}, {0, 0.1, 0});
   return scene;
 }
 

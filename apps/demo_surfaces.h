@@ -1,4 +1,4 @@
-// Small scenes for what is not made of triangles.
+// Small scenes for what is not made of triangles, and for materials.
 #pragma once
 
 #include "obscura/apps/glb_writer.h"
@@ -10,5 +10,9 @@ GlbScene makeImplicitScene();
 
 // A floor that a 16-bit height map displaces, rolling with stones in it, and a block that stands on it.
 GlbScene makeReliefScene();
+
+// Four rows of six spheres, roughness 0 ... 1 to the right: gold, half metal, blue and black lacquer, nearer and nearer. The
+// tiles below have metallic and roughness from a texture.
+GlbScene makeMaterialsScene();
 
 }  // namespace obscura::apps

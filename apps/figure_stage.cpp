@@ -41,6 +41,7 @@ FigureStage::FigureStage(const GlbScene& made, const FigureSettings& figure, dou
   const engine::Result<raster::Camera> camera = engine::chooseCamera(scene_, {}, figure.width, figure.height);
   if (!camera) throw FigureError(camera.error().text());
   settings.camera = *camera;
+  settings.brdf = post::Brdf::Lambert;  // as in the papers
   settings.transfer.radius = float(radius);
   settings.transfer.bias = float(engine::kDefaultBias * radius);
   settings.transfer.filterThreshold = float(engine::kDefaultFilterThreshold * radius);

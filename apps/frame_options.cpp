@@ -292,6 +292,10 @@ void addView(CLI::App& app, FrameOptions& o) {
       ->group("View");
   addLength(app, "--separation", false, o.separation, "how far behind what is seen the AOV depth2 and the second layer begin",
             shown(engine::kDefaultSeparation) + " x R, with --layers 2 " + shown(engine::kLayerSeparation) + " x R")->group("View");
+  addChoice(app, "--brdf", kBrdfNames, o.brdf,
+            "how surfaces reflect: by metallic and roughness as glTF says; all alike from everywhere; or by Blinn-Phong's "
+            "highlights, smooth or cut off sharply")
+      ->group("View");
   addAmbientLight(app, o);
   addAmbientVariants(app, o);
 }
@@ -402,6 +406,7 @@ engine::Result<ResolvedFrame> FrameOptions::resolve(const engine::Scene& in) con
   out.frame.crop = crop;
   out.frame.supersample = supersample;
   out.frame.camera = *chosen;
+  out.frame.brdf = brdf;
   out.frame.ambient = ambient;
   out.frame.ambientLight = ambientLight.value_or(glm::vec3(1));
   out.frame.ambientDirections = ambientDirections;

@@ -59,6 +59,7 @@ struct FrameOptions {
   LightOptions light;
   post::ToneSettings tone;
   bool displacement = true;
+  post::Brdf brdf = post::Brdf::Gltf;
   post::Occlusion ambient = post::Occlusion::Transfer;
   post::AmbientSettings transfer;                          // but for three of the lengths below
   std::optional<double> radius, bias, filterThreshold;     // scene units; empty: a fraction of the scene's size

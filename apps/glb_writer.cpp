@@ -104,10 +104,12 @@ Json primitiveOf(const GlbMesh& mesh, Buffer& buffer) {
 }
 
 Json materialJson(const GlbMaterial& material) {
+  const auto number = [](double v) { return v == double(int(v)) ? Json(int(v)) : Json(v); };
   Json pbr = {{"baseColorFactor", {material.baseColor.x, material.baseColor.y, material.baseColor.z, 1}},
-              {"metallicFactor", 0},
-              {"roughnessFactor", 1}};
+              {"metallicFactor", number(material.metallic)},
+              {"roughnessFactor", number(material.roughness)}};
   if (material.texture >= 0) pbr["baseColorTexture"] = {{"index", material.texture}};
+  if (material.gloss >= 0) pbr["metallicRoughnessTexture"] = {{"index", material.gloss}};
   Json json = {{"name", material.name}, {"pbrMetallicRoughness", pbr}};
   if (material.alphaCutoff > 0) {
     json["alphaMode"] = "MASK";

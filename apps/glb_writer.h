@@ -14,7 +14,7 @@ namespace obscura::apps {
 struct GlbTexture {  // becomes an embedded PNG, repeated in both directions, with mip maps
   std::string name;
   int width = 0, height = 0;
-  std::vector<uint8_t> rgba;  // sRGB and straight alpha, row 0 on top
+  std::vector<uint8_t> rgba;  // sRGB and straight alpha, or metallic in blue and roughness in green; row 0 on top
   std::vector<uint16_t> grey = {};  // instead of it: linear, 16 bits
 };
 
@@ -23,6 +23,8 @@ struct GlbMaterial {
   glm::dvec3 baseColor{1};  // linear
   glm::dvec3 emissive{0};   // linear; above 1 with KHR_materials_emissive_strength
   int texture = -1;         // into GlbScene::textures
+  double metallic = 0, roughness = 1;
+  int gloss = -1;           // alike: metallic and roughness are factors on it
   double alphaCutoff = 0;   // above 0: alphaMode MASK
   bool doubleSided = false;
   std::string extras;       // JSON, or empty

@@ -21,7 +21,8 @@ int main(int argc, char** argv) {
   } kScenes[] = {{"demo", "a tree with stones on uneven ground, some 120,000 triangles", apps::makeDemoScene},
                  {"implicit", "implicit surfaces of each kind on a floor of triangles", apps::makeImplicitScene},
                  {"relief", "a floor that a height map displaces", apps::makeReliefScene},
-                 {"lights", "a courtyard at dusk: a low sun, a lamp and a spot, which cast shadows", apps::makeLightsScene}};
+                 {"lights", "a courtyard at dusk: a low sun, a lamp and a spot, which cast shadows", apps::makeLightsScene},
+                 {"materials", "spheres from smooth to rough, of metal and of other things, on tiles", apps::makeMaterialsScene}};
   for (const auto& scene : kScenes)
     app.add_subcommand(scene.name, scene.what)->add_option("-o,--output", output, "the .glb file to write; - is standard output")->required();
   try {

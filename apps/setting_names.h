@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "obscura/engine/environment_projection.h"
+#include "obscura/post/brdf.h"
 #include "obscura/post/settings.h"
 #include "obscura/post/tone_map.h"
 
@@ -23,6 +24,10 @@ inline const Names<post::Estimator> kEstimatorNames = {
 inline const Names<post::FilterGuide> kFilterGuideNames = {{"depth", post::FilterGuide::Depth},
                                                            {"plane", post::FilterGuide::Plane}};
 
+inline const Names<post::Brdf> kBrdfNames = {{"gltf", post::Brdf::Gltf},
+                                             {"lambert", post::Brdf::Lambert},
+                                             {"blinn-phong", post::Brdf::BlinnPhong},
+                                             {"blinn-phong-thresholded", post::Brdf::BlinnPhongThresholded}};
 inline const Names<post::ToneCurve> kToneCurveNames = {
     {"none", post::ToneCurve::None}, {"reinhard", post::ToneCurve::Reinhard}, {"neutral", post::ToneCurve::Neutral}};
 inline const Names<engine::EnvironmentProjection> kProjectionNames = {{"latlong", engine::EnvironmentProjection::Latlong},

@@ -4,7 +4,7 @@ namespace obscura::engine {
 
 const std::vector<AovInfo>& allAovs() {
   static const std::vector<AovInfo> all = {
-      {Aov::Color, "color", {"R", "G", "B"}, "the picture: albedo x W x ambient light + emission, linear (sRGB in 8-bit files)"},
+      {Aov::Color, "color", {"R", "G", "B"}, "the picture: ambient reflectance x W x ambient light + emission, linear (sRGB in 8-bit files)"},
       {Aov::Depth, "depth", {"Z"}, "distance along the view axis, scene units; infinity where empty"},
       {Aov::Normal, "normal", {"X", "Y", "Z"}, "unit normal in camera space: x right, y up, z towards the eye"},
       {Aov::Albedo, "albedo", {"R", "G", "B"}, "linear reflectance, 0 to 1"},

@@ -71,7 +71,7 @@ LightStatistics DirectLights::draw(const Input& in, raster::Rasterizer& rasteriz
   const auto flush = [&] {
     for (size_t k = 0; k < mapOf.size(); ++k) batch[mapOf[k].first].map[mapOf[k].second].depth = &maps_[k];
     timings.shadows += watch.lap();
-    const post::DirectLightInput input{&in.g, in.projector, batch, post::Brdf::Lambert, in.skip, drawn};
+    const post::DirectLightInput input{&in.g, in.projector, batch, in.settings.brdf, in.skip, drawn};
     parallel.forRanges(size_t(in.endRow - in.firstRow), kRowsPerTask, [&](size_t begin, size_t end, int) {
       const int y0 = in.firstRow + int(begin), y1 = in.firstRow + int(end);
       in.reference ? post::directLightRef(input, y0, y1, out) : post::directLight(input, y0, y1, out, in.target);
@@ -87,7 +87,7 @@ LightStatistics DirectLights::draw(const Input& in, raster::Rasterizer& rasteriz
     const int size = light.shadows && in.settings.shadows ? in.settings.shadowSize : 0;
     LightViews views = viewsOf(light, in.settings.camera, in.scene.bounds, size);
     if (size > 0) {
-      const post::DirectLightInput input{&in.g, in.projector, {}, post::Brdf::Lambert, in.skip, false};
+      const post::DirectLightInput input{&in.g, in.projector, {}, in.settings.brdf, in.skip, false};
       const uint32_t needed = overRows<uint32_t>(
           parallel, in.firstRow, in.endRow,
           [&](int y0, int y1) {

@@ -25,7 +25,7 @@ class DirectLights {
     const Scene& scene;
     const FrameSettings& settings;
     const raster::DrawList& list;         // of the scene
-    const raster::GBuffer& g;             // depth, normal, albedo, and facet if hasShadows()
+    const raster::GBuffer& g;             // depth, normal, albedo, metallic and roughness of a glossy BRDF, and facet if hasShadows()
     post::Projector projector;            // of g
     int firstRow, endRow;                 // of g: what is wanted
     const raster::Plane<float>& whole;    // depth of the image and its border, if there are directional lights with shadows,

@@ -118,6 +118,7 @@ std::optional<post::AskedInput> Renderer::State::asking(const FrameSettings& s, 
   if (reference || !settings.skip || !(needs.onlyLit || window.width > filteredWindow(s).width)) return std::nullopt;
   post::AskedInput question{&g, part, s.transfer.filter, needs.onlyLit, {}};
   if (!needs.radiance) question.ambient = ambient.instances;
+  question.glossy = isGlossy(needs.brdf);
   return question;
 }
 
@@ -188,7 +189,8 @@ void Renderer::State::drawTransfer(const FrameSettings& s, const FrameNeeds& nee
     in.heights = draws.heights();
     if (needs.radiance) {
       radiance = post::makeLinearColor(g.width, g.height, std::move(radiance));
-      const post::LightInput first{&g, nullptr, post::Occlusion::None, ambient, glm::vec3(0), needs.direct ? &(more() ? drawnDirect : direct) : nullptr};
+      const post::LightInput first{&g, nullptr, post::Occlusion::None, ambient, glm::vec3(0), needs.direct ? &(more() ? drawnDirect : direct) : nullptr,
+                                   needs.brdf, in.projector};
       forRows(0, g.height, [&](int y0, int y1) {
         reference ? post::lightRef(first, y0, y1, radiance) : post::light(first, y0, y1, radiance, target);
       });
@@ -212,7 +214,8 @@ void Renderer::State::drawTransfer(const FrameSettings& s, const FrameNeeds& nee
 }
 
 void Renderer::State::drawLight(const FrameSettings& s, const FrameNeeds& needs, Frame& out) {
-  const post::LightInput in{&out.g, &out.transfer, needs.occlusion, ambient, s.background, needs.direct ? &direct : nullptr};
+  const post::Projector projector = post::makeProjector(s.camera, s.width, s.height, outputWindow(s));
+  const post::LightInput in{&out.g, &out.transfer, needs.occlusion, ambient, s.background, needs.direct ? &direct : nullptr, needs.brdf, projector};
   if (needs.color) {
     for (int c = 0; overSums && c < 3; ++c) out.color.rgb[c] = std::exchange(sums.denominator[c], {});
     out.color = post::makeLinearColor(out.width, out.height, std::move(out.color));
@@ -271,7 +274,7 @@ Result<Done> Renderer::render(const Scene& scene, const FrameSettings& settings,
 
   const bool normalIsAov = std::find(settings.aovs.begin(), settings.aovs.end(), Aov::Normal) != settings.aovs.end();
   const bool normalIsRead = (settings.transfer.filter && settings.transfer.filterGuide == post::FilterGuide::Plane) ||
-                            lightsByNormal(settings);
+                            lightsByNormal(settings) || isGlossy(needs.brdf);
   s.overNormals = supersampled && needs.transfer.w && !normalIsAov && !normalIsRead;
   s.overSums = supersampled;
   if (needs.color || needs.radiance) s.ambient = ambientLightOf(scene, settings, s.ambientOfInstances);

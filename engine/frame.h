@@ -34,6 +34,7 @@ struct FrameSettings {
   // The part of the image that is wanted, inside of it. Changes no bit: its pixels are those of the whole frame with the
   // same border.
   std::optional<raster::Window> crop;
+  post::Brdf brdf = post::Brdf::Gltf;
   post::Occlusion ambient = post::Occlusion::Transfer;
   post::AmbientSettings transfer;
   // La, linear: of what belongs to no node group of its own (Instance::ambient), and a factor by the direction of the
@@ -69,10 +70,9 @@ struct FrameTimings {  // milliseconds; 0 for what was not needed
 };
 
 // Planes that no AOV needed are empty; O and W that are needed for the colour alone are those of open pixels where they
-// cannot be seen in it, as on black and on unlit things. With supersampling only planes that are AOVs themselves are there; how they come
+// cannot be seen in it, as on unlit things and, with Brdf::Lambert, on black ones. With supersampling only planes that are AOVs themselves are there; how they come
 // from the sub-pixels: downsample_frame.h. The statistics are those of the sub-pixels' image.
-// With TransferAlbedo::Radiance the radiance is the emission and what the albedo reflects of the ambient light La and of direct
-// lights.
+// With TransferAlbedo::Radiance the radiance is the emission, the ambient light R_A La, and what is reflected of direct lights.
 struct Frame {
   int width = 0, height = 0;            // of the planes: the crop's, or the image's
   int x = 0, y = 0;                     // where their pixel (0, 0) lies in the image

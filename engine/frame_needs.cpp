@@ -11,9 +11,10 @@ namespace obscura::engine {
 namespace {
 
 // Some pixels may reflect nothing, whatever textures hold.
-bool hasDarkThings(const Scene& scene) {
-  return std::any_of(scene.materials.begin(), scene.materials.end(), [](const raster::Material& m) {
-    return m.unlit || !(m.baseColor.x > 0 || m.baseColor.y > 0 || m.baseColor.z > 0);
+bool hasDarkThings(const Scene& scene, post::Brdf brdf) {
+  return std::any_of(scene.materials.begin(), scene.materials.end(), [&](const raster::Material& m) {
+    if (m.unlit || isGlossy(brdf)) return m.unlit;  // what is black is glossy all the same
+    return !(m.baseColor.x > 0 || m.baseColor.y > 0 || m.baseColor.z > 0);
   }) || std::any_of(scene.instances.begin(), scene.instances.end(), [](const Instance& i) {
     return i.ambient && *i.ambient == glm::vec3(0);
   });
@@ -44,11 +45,13 @@ FrameNeeds needsOf(const Scene& scene, const FrameSettings& s) {
   n.transfer.obscurance =
       wants(Aov::Obscurance) || n.radiance || n.occlusion == post::Occlusion::Obscurance;
   n.sums = w || n.transfer.obscurance;
-  n.onlyLit = n.sums && !wants(Aov::Obscurance) && !wants(Aov::Transfer) && hasDarkThings(scene);
+  n.onlyLit = n.sums && !wants(Aov::Obscurance) && !wants(Aov::Transfer) && hasDarkThings(scene, s.brdf);
   const bool lights = n.color || n.radiance;
   n.direct = lights && hasLights(scene, s);
+  if (lights) n.brdf = s.brdf;
+  const bool glossy = isGlossy(n.brdf);
   n.planes.depth = wants(Aov::Depth) || n.sums || n.color || s.supersample > 1;  // the nearest sub-pixel
-  n.planes.normal = wants(Aov::Normal) || n.sums || (lights && lightsByNormal(s)) || n.direct;
+  n.planes.normal = wants(Aov::Normal) || n.sums || (lights && lightsByNormal(s)) || n.direct || glossy;
   n.planes.facet = n.direct && hasShadows(scene, s);
   n.planes.albedo = wants(Aov::Albedo) || n.albedo || lights;
   n.planes.emissive = wants(Aov::Emissive) || (lights && std::any_of(scene.materials.begin(), scene.materials.end(), raster::emits));
@@ -59,8 +62,8 @@ FrameNeeds needsOf(const Scene& scene, const FrameSettings& s) {
   n.planes.material = wants(Aov::Material);
   n.planes.depth2 = wants(Aov::Depth2) || (n.sums && s.transfer.layers == 2);
   n.planes.depthBack = wants(Aov::DepthBack);
-  n.planes.metallic = wants(Aov::Metallic);
-  n.planes.roughness = wants(Aov::Roughness);
+  n.planes.metallic = wants(Aov::Metallic) || glossy;
+  n.planes.roughness = wants(Aov::Roughness) || glossy;
   n.planes.separation = s.separation;
   return n;
 }

@@ -1,6 +1,7 @@
 #include "obscura/post/asked.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "obscura/post/ambient_transfer.h"
@@ -46,11 +47,15 @@ class Asked {
 
   // Or empty: that is cheaper to let pass than to find out that all of a sky asks for nothing.
   bool isLit(int x, int y) const {
-    if (!(g_.albedo[0].at(x, y) > 0 || g_.albedo[1].at(x, y) > 0 || g_.albedo[2].at(x, y) > 0))
-      return !(g_.depth.at(x, y) < std::numeric_limits<float>::infinity());
+    if (!reflects(x, y)) return !(g_.depth.at(x, y) < std::numeric_limits<float>::infinity());
     if (in_.ambient.empty() || g_.instance.at(x, y) >= in_.ambient.size()) return true;
     const glm::vec3& la = in_.ambient[g_.instance.at(x, y)];
     return la.x > 0 || la.y > 0 || la.z > 0;
+  }
+
+  bool reflects(int x, int y) const {
+    if (in_.glossy) return !std::signbit(g_.metallic.at(x, y));
+    return g_.albedo[0].at(x, y) > 0 || g_.albedo[1].at(x, y) > 0 || g_.albedo[2].at(x, y) > 0;
   }
 
   const AskedInput& in_;

@@ -59,7 +59,8 @@ HWY_INLINE Lobe lobeOf(const uint32_t* table, VF nv, VF roughness) {
   const VF last = hn::Set(d, float(kBrdfTable - 1));
   const VI beforeLast = hn::Set(di, kBrdfTable - 2);
   const VF x = hn::Mul(hn::Sqrt(nv), last), y = hn::Mul(roughness, last);
-  const VI column = hn::Min(truncated(x), beforeLast), row = hn::Min(truncated(y), beforeLast);
+  // The roughness of lanes beyond the image's edge may be any number.
+  const VI column = hn::Min(truncated(x), beforeLast), row = hn::Max(hn::Min(truncated(y), beforeLast), hn::Zero(di));
   const VF tx = hn::Sub(x, hn::ConvertTo(d, column)), ty = hn::Sub(y, hn::ConvertTo(d, row));
   const VI at = hn::Add(hn::ShiftLeft<5>(row), column);
   static_assert(kBrdfTable == 32, "a shift by 5");
@@ -102,6 +103,7 @@ class Reflection {
     }
     nv_ = facingOf(n, v);
     const VF metal = metallic, other = hn::Sub(one, metallic), f0 = hn::Set(d, kDielectric);
+    const MF unlit = hn::RebindMask(d, hn::Lt(hn::BitCast(DI(), metallic), hn::Zero(DI())));  // the sign of -0
     const Lobe lobe = lobeOf(brdfTable(kBrdf), nv_, roughness);
     const VF notShare = hn::Sub(one, lobe.share), lost = hn::Sub(one, lobe.e);
     const auto fresnel = [&](VF f) HWY_ATTR { return hn::Add(lobe.share, hn::Mul(f, notShare)); };  // (F0 A + B) / E
@@ -136,6 +138,11 @@ class Reflection {
       channel(base.y, diffuse.y, specular.y, normal_.y, grazing_.y);
       channel(base.z, diffuse.z, specular.z, normal_.z, grazing_.z);
     }
+    const auto keep = [&](V3& a) HWY_ATTR { a = {hn::IfThenZeroElse(unlit, a.x), hn::IfThenZeroElse(unlit, a.y), hn::IfThenZeroElse(unlit, a.z)}; };
+    keep(diffuse);
+    keep(specular);
+    keep(normal_);
+    keep(grazing_);
   }
 
   // R_A(v) in two parts: what is scattered below the surface, and what its facets reflect, which is S(v). Each >= 0, their

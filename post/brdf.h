@@ -7,9 +7,9 @@
 
 namespace obscura::post {
 
-// Of a base colour c, metallic m and roughness r of the G-buffer; n.v is the cosine between normal and view, F(x) is Schlick's
-// Fresnel term F0 + (1 - F0) (1 - v.h)^5. E, A and B below are integrals over the hemisphere, so functions of n.v and r:
-// E of the specular part for F = 1, B for F = (1 - v.h)^5, A = E - B.
+// Of a base colour c, metallic m and roughness r of the G-buffer; n.v is the cosine between normal and view, F(F0) is
+// Schlick's Fresnel term F0 + (1 - F0) (1 - v.h)^5. E, A and B are integrals over the hemisphere, so functions of n.v and r:
+// E of the specular part for F = 1, B for F = (1 - v.h)^5, A = E - B. What is unlit (m is -0) reflects nothing.
 //
 // Lambert      f = c / pi, R_A = c. Reads no planes but the albedo.
 // Gltf         the metallic-roughness material of glTF 2.0 (appendix B): D of GGX, alpha = r^2, and the height-correlated

@@ -6,6 +6,8 @@
 namespace obscura::post::ref {
 namespace {
 
+bool isUnlit(const Surface& s) { return std::signbit(s.metallic); }
+
 struct Lobe {
   float e, share;  // E, B / E
 };
@@ -74,6 +76,7 @@ glm::vec3 viewDirection(const Projector& p, int x, int y) {
 
 Reflectance ambientReflectance(Brdf brdf, const Surface& s) {
   if (brdf == Brdf::Lambert) return {s.base, glm::vec3(0)};
+  if (isUnlit(s)) return {glm::vec3(0), glm::vec3(0)};
   const Lobe lobe = lookUp(brdf, facing(s.n, s.v), s.roughness);
   const float m = s.metallic;
   Reflectance r;
@@ -95,7 +98,7 @@ Reflectance ambientReflectance(Brdf brdf, const Surface& s) {
 glm::vec3 reflection(Brdf brdf, const Surface& s, const glm::vec3& l, float nl) {
   constexpr float kPerPi = 0.318309886f;
   const glm::vec3 diffuse = ambientReflectance(brdf, s).diffuse * kPerPi;
-  if (brdf == Brdf::Lambert) return diffuse;
+  if (brdf == Brdf::Lambert || isUnlit(s)) return diffuse;
   const glm::vec3 h = l + s.v, across(s.n.y * h.z - s.n.z * h.y, s.n.z * h.x - s.n.x * h.z, s.n.x * h.y - s.n.y * h.x);
   const float square = dot(h, h) > 1e-12f ? dot(h, h) : 1e-12f, length = std::sqrt(square);
   const float nh = std::max(std::min(dot(s.n, h) / length, 1.0f), 0.0f), sine2 = std::min(dot(across, across) / square, 1.0f);

@@ -7,13 +7,18 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "obscura/post/vector-inl.h"
+#include "obscura/post/brdf-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace obscura::post {
 namespace HWY_NAMESPACE {
 
 constexpr float kMost = std::numeric_limits<float>::max(), kInfinity = std::numeric_limits<float>::infinity();
+
+HWY_INLINE V3 loaded(const raster::Plane<float> (&planes)[3], int x, int y) {
+  const DF d;
+  return {hn::LoadU(d, planes[0].row(y) + x), hn::LoadU(d, planes[1].row(y) + x), hn::LoadU(d, planes[2].row(y) + x)};
+}
 
 // La for vectors of pixels. Which of its parts there are is the same for all of a frame.
 template <bool kVaries>
@@ -51,11 +56,6 @@ class Ambient {
             hn::IfThenElse(found, hn::GatherIndex(d, table + 2, first), otherwise.z)};
   }
 
-  HWY_INLINE V3 normalAt(int x, int y) const {
-    const DF d;
-    return {hn::LoadU(d, g_.normal[0].row(y) + x), hn::LoadU(d, g_.normal[1].row(y) + x), hn::LoadU(d, g_.normal[2].row(y) + x)};
-  }
-
   // One channel of the quadratic form.
   static HWY_INLINE VF quadric(const NormalQuadric& q, int c, const V3& n) {
     const DF d;
@@ -69,7 +69,7 @@ class Ambient {
   }
 
   HWY_NOINLINE V3 ofEnvironment(int x, int y) const {
-    const V3 n = normalAt(x, y);
+    const V3 n = loaded(g_.normal, x, y);
     const NormalQuadric& q = *in_.environment;
     return {quadric(q, 0, n), quadric(q, 1, n), quadric(q, 2, n)};
   }
@@ -77,7 +77,7 @@ class Ambient {
   HWY_INLINE V3 byNormal(int x, int y) const {
     const DF d;
     const VF zero = hn::Zero(d);
-    const V3 n = normalAt(x, y);
+    const V3 n = loaded(g_.normal, x, y);
     V3 sum{zero, zero, zero};
     VF weights = zero;
     for (const AmbientDirection& k : in_.directions) {
@@ -103,11 +103,23 @@ HWY_INLINE MF seenAt(const raster::GBuffer& g, int x, int y) {
   return hn::Lt(hn::LoadU(DF(), g.depth.row(y) + x), hn::Set(DF(), kInfinity));
 }
 
-template <bool kVaries>
+// R_A(v).
+template <Brdf kBrdf>
+HWY_INLINE V3 ambientReflectance(const raster::GBuffer& g, const ViewDirections& directions, int x, int y) {
+  const DF d;
+  const V3 base = loaded(g.albedo, x, y);
+  if constexpr (!isGlossy(kBrdf)) return base;
+  const Reflection<kBrdf> r(base, hn::LoadU(d, g.metallic.row(y) + x), hn::LoadU(d, g.roughness.row(y) + x), loaded(g.normal, x, y),
+                            directions.at(x, y));
+  return {hn::Add(r.diffuse.x, r.specular.x), hn::Add(r.diffuse.y, r.specular.y), hn::Add(r.diffuse.z, r.specular.z)};
+}
+
+template <bool kVaries, Brdf kBrdf>
 void lightRows(const LightInput& in, int y0, int y1, LinearColor& out) {
   const DF d;
   const raster::GBuffer& g = *in.g;
   const Ambient<kVaries> ambient(g, in.ambient);
+  const ViewDirections directions(in.projector);
   const bool emits = !g.emissive[0].empty();
   const bool bounced = in.occlusion == Occlusion::Transfer && !in.transfer->bounced[0].empty();
   const bool obscured = in.occlusion == Occlusion::Obscurance || bounced;
@@ -115,9 +127,10 @@ void lightRows(const LightInput& in, int y0, int y1, LinearColor& out) {
     for (int x = 0; x < g.width; x += int(hn::Lanes(d))) {
       const MF seen = seenAt(g, x, y);
       const V3 la = ambient.at(x, y);
-      const VF channels[3] = {la.x, la.y, la.z};
+      const V3 reflectance = ambientReflectance<kBrdf>(g, directions, x, y);
+      const VF channels[3] = {la.x, la.y, la.z}, colors[3] = {reflectance.x, reflectance.y, reflectance.z};
       for (int c = 0; c < 3; ++c) {
-        VF color = hn::LoadU(d, g.albedo[c].row(y) + x);
+        VF color = colors[c];
         if (bounced) {
           const VF arriving = hn::Mul(hn::LoadU(d, in.transfer->obscurance.row(y) + x), channels[c]);
           color = hn::Mul(color, hn::Add(arriving, hn::LoadU(d, in.transfer->bounced[c].row(y) + x)));
@@ -133,9 +146,19 @@ void lightRows(const LightInput& in, int y0, int y1, LinearColor& out) {
     }
 }
 
+template <bool kVaries>
+void lightBy(const LightInput& in, int y0, int y1, LinearColor& out) {
+  switch (in.brdf) {
+    case Brdf::Lambert: return lightRows<kVaries, Brdf::Lambert>(in, y0, y1, out);
+    case Brdf::Gltf: return lightRows<kVaries, Brdf::Gltf>(in, y0, y1, out);
+    case Brdf::BlinnPhong: return lightRows<kVaries, Brdf::BlinnPhong>(in, y0, y1, out);
+    case Brdf::BlinnPhongThresholded: return lightRows<kVaries, Brdf::BlinnPhongThresholded>(in, y0, y1, out);
+  }
+}
+
 void Light(const LightInput& in, int y0, int y1, LinearColor& out) {
   const bool varies = in.ambient.needsInstance() || in.ambient.needsNormal();
-  varies ? lightRows<true>(in, y0, y1, out) : lightRows<false>(in, y0, y1, out);
+  varies ? lightBy<true>(in, y0, y1, out) : lightBy<false>(in, y0, y1, out);
 }
 
 void TransferOfBounced(const LightInput& in, int y0, int y1, raster::Plane<float>* w) {

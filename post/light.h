@@ -1,12 +1,15 @@
-// In:  albedo, emission, depth; O, W or the bounced light; what La depends on; the light of direct lights that is reflected.
-// Out: linear colour, Lr = a W La + direct + emission (long paper, equation 2).
+// In:  albedo, emission, depth; O, W or the bounced light; what La and the ambient reflectance R_A depend on; the light of
+//      direct lights that is reflected.
+// Out: linear colour, Lr = R_A W La + direct + emission (long paper, equation 2, where R_A is a; brdf.h).
 #pragma once
 
 #include <glm/vec3.hpp>
 
 #include "obscura/post/ambient_light.h"
+#include "obscura/post/brdf.h"
 #include "obscura/post/depth_filter.h"
 #include "obscura/post/linear_color.h"
+#include "obscura/post/projector.h"
 #include "obscura/raster/gbuffer.h"
 #include "obscura/raster/target.h"
 
@@ -16,13 +19,16 @@ namespace obscura::post {
 enum class Occlusion : uint8_t { None, Obscurance, Transfer };
 
 struct LightInput {
-  // Depth and albedo; emission where the scene has any; instance and normal where the ambient light needs them.
+  // Depth and albedo; emission where the scene has any; instance and normal where the ambient light needs them; normal,
+  // metallic and roughness of a glossy BRDF.
   const raster::GBuffer* g = nullptr;
   const Transfer* transfer = nullptr;  // may be null for Occlusion::None
   Occlusion occlusion = Occlusion::Transfer;
   AmbientLight ambient;
   glm::vec3 background{0};             // linear; where nothing was drawn
   const LinearColor* direct = nullptr; // reflected, see direct_light.h; of the G-buffer's size; null: none
+  Brdf brdf = Brdf::Lambert;
+  Projector projector = {};            // of a glossy BRDF: where the G-buffer's pixels look
 };
 
 // Without occlusion this is also a first guess of what the occluders send back, see TransferInput::radiance: their

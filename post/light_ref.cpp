@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "obscura/post/brdf_ref.h"
 #include "obscura/post/light.h"
 #include "obscura/raster/float_environment.h"
 
@@ -38,6 +39,22 @@ glm::vec3 ambientAt(const AmbientLight& in, const raster::GBuffer& g, int x, int
 
 bool isSeen(const raster::GBuffer& g, int x, int y) { return g.depth.at(x, y) < std::numeric_limits<float>::infinity(); }
 
+glm::vec3 vectorAt(const raster::Plane<float> (&planes)[3], int x, int y) {
+  return {planes[0].at(x, y), planes[1].at(x, y), planes[2].at(x, y)};
+}
+
+// R_A(v)
+glm::vec3 reflectanceAt(const LightInput& in, int x, int y) {
+  const raster::GBuffer& g = *in.g;
+  ref::Surface s;
+  s.base = vectorAt(g.albedo, x, y);
+  if (!isGlossy(in.brdf)) return s.base;
+  s.metallic = g.metallic.at(x, y), s.roughness = g.roughness.at(x, y);
+  s.n = vectorAt(g.normal, x, y), s.v = ref::viewDirection(in.projector, x, y);
+  const ref::Reflectance r = ref::ambientReflectance(in.brdf, s);
+  return r.diffuse + r.specular;
+}
+
 }  // namespace
 
 void lightRef(const LightInput& in, int y0, int y1, LinearColor& out) {
@@ -45,9 +62,9 @@ void lightRef(const LightInput& in, int y0, int y1, LinearColor& out) {
   const raster::GBuffer& g = *in.g;
   for (int y = y0; y < y1; ++y)
     for (int x = 0; x < g.width; ++x) {
-      const glm::vec3 la = ambientAt(in.ambient, g, x, y);
+      const glm::vec3 la = ambientAt(in.ambient, g, x, y), reflectance = reflectanceAt(in, x, y);
       for (int c = 0; c < 3; ++c) {
-        const float a = g.albedo[c].at(x, y);
+        const float a = reflectance[c];
         float reflected = a * la[c];
         if (in.occlusion == Occlusion::Obscurance) reflected = a * in.transfer->obscurance.at(x, y) * la[c];
         if (in.occlusion == Occlusion::Transfer)

@@ -47,7 +47,7 @@ struct GBuffer {
   Plane<float> albedo[3];    // linear, [0, 1]: base colour factor x texture x vertex colour; 0 where unlit
   Plane<float> emissive[3];  // linear, >= 0; the base colour where unlit
   Plane<float> position[3];  // camera space, scene units
-  Plane<float> metallic;     // linear, [0, 1]: metallic factor x texture B; 0 where unlit
+  Plane<float> metallic;     // linear, [0, 1]: metallic factor x texture B; -0 where unlit: the sign says so
   Plane<float> roughness;    // linear, [0, 1]: roughness factor x texture G, perceptual as in glTF; 1 where unlit
   Plane<uint32_t> triangle;  // id, see DrawList
   Plane<uint32_t> instance;  // index into DrawList::instances, and beyond them into DrawList::implicits

@@ -157,7 +157,7 @@ std::vector<ImplicitDraw> makeImplicitDraws(const DrawList& list, const Camera& 
       d.albedo[c] = m.unlit ? 0 : base;
       d.emissive[c] = m.unlit ? base : m.emissive[c] > 0 ? m.emissive[c] : 0;
     }
-    d.metallic = m.unlit ? 0 : unitRange(m.metallic);
+    d.metallic = m.unlit ? -0.0f : unitRange(m.metallic);
     d.roughness = m.unlit ? 1 : unitRange(m.roughness);
     d.doubleSided = m.doubleSided;
     d.id = id;

@@ -145,7 +145,7 @@ void resolveShaded(const SurfaceContext& context, uint32_t id, float key, const 
   store(out.normal, x, y, shaded.normal);
   store(out.albedo, x, y, unlit ? glm::vec3(0) : base);
   store(out.emissive, x, y, unlit ? base : emitted);
-  store(out.metallic, x, y, unlit ? 0 : std::min(nonNegative(shaded.metallic), 1.0f));
+  store(out.metallic, x, y, unlit ? -0.0f : std::min(nonNegative(shaded.metallic), 1.0f));
   store(out.roughness, x, y, unlit ? 1 : std::min(nonNegative(shaded.roughness), 1.0f));
   store(out.position, x, y, positionAt(view, x, y, zView));
   store(out.triangle, x, y, id);

@@ -68,7 +68,8 @@ struct Gloss {
 };
 HWY_INLINE Gloss constantGloss(const Material& m) {
   const DF d;
-  return {unitRange(hn::Set(d, m.unlit ? 0 : m.metallic)), unitRange(hn::Set(d, m.unlit ? 1 : m.roughness))};
+  if (m.unlit) return {hn::Set(d, -0.0f), hn::Set(d, 1.0f)};
+  return {unitRange(hn::Set(d, m.metallic)), unitRange(hn::Set(d, m.roughness))};
 }
 HWY_INLINE Gloss glossOf(const Material& m, VF green, VF blue) {
   const DF d;

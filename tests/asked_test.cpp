@@ -19,6 +19,7 @@ engine::FrameSettings settingsOf(const TestScene& scene, uint32_t seed) {
   s.camera = scene.camera;
   s.transfer.radius = 0.7f, s.transfer.bias = 0.01f, s.transfer.filterThreshold = 0.2f;
   s.transfer.albedo = post::TransferAlbedo(seed % 3);
+  s.brdf = post::Brdf(seed / 3 % 4);
   s.transfer.filter = seed % 4 != 3;
   s.transfer.estimator = post::Estimator(seed / 2 % 4);
   s.ambient = seed % 5 == 4 ? post::Occlusion::Obscurance : post::Occlusion::Transfer;

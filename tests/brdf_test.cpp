@@ -78,6 +78,7 @@ std::vector<Lit> manyLit() {
     Lit l;
     for (int c = 0; c < 3; ++c) l.surface.base[c] = unit();
     l.surface.metallic = unit(), l.surface.roughness = unit();
+    if (i % 20 == 0) l.surface.metallic = -0.0f;  // unlit
     const auto direction = [&] {
       const glm::vec3 v = random.vector(-1, 1);
       return v * (1 / std::sqrt(std::max(v.x * v.x + v.y * v.y + v.z * v.z, 1e-6f)));

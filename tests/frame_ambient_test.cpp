@@ -214,6 +214,7 @@ TEST_CASE("ambient frames: planes of ids and normals are there only if something
   for (engine::Instance& i : scene.instances) i.ambient.reset();
   CHECK(frameOf(scene, s).g.instance.empty());
   s.ambient = post::Occlusion::None;
+  s.brdf = post::Brdf::Lambert;
   CHECK(frameOf(scene, s).g.normal[0].empty());
   s.ambientDirections = kSixColors;
   CHECK_FALSE(frameOf(scene, s).g.normal[0].empty());

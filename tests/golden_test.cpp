@@ -30,7 +30,7 @@ const std::string kFolder = OBSCURA_SOURCE_DIR "/tests/golden/";
 const std::string kFound = OBSCURA_BINARY_DIR "/golden_found/";
 const std::vector<engine::Aov> kAovs = {engine::Aov::Color,    engine::Aov::Depth,    engine::Aov::Normal,   engine::Aov::Albedo,
                                         engine::Aov::Emissive, engine::Aov::Obscurance, engine::Aov::Transfer, engine::Aov::Position,
-                                        engine::Aov::Triangle, engine::Aov::Instance, engine::Aov::Material};
+                                        engine::Aov::Triangle, engine::Aov::Instance, engine::Aov::Material, engine::Aov::Metallic, engine::Aov::Roughness};
 
 bool blessing() { return std::getenv("OBSCURA_BLESS") != nullptr; }
 
@@ -170,6 +170,21 @@ TEST_CASE("golden: a courtyard with a sun, a lamp and a spot that cast shadows, 
   s.transfer.albedo = post::TransferAlbedo::Radiance;
   s.shadowSize = 512;
   checkGolden("lights", s, scene);
+}
+
+TEST_CASE("golden: metal, lacquer and tiles, from smooth to rough") {
+  const engine::Scene scene = tests::sceneOfGlb(apps::makeMaterialsScene());
+  engine::FrameSettings s = frameOf(160, 120, scene);
+  s.supersample = 2;
+  checkGolden("materials", s, scene);
+}
+
+TEST_CASE("golden: the same with thresholded highlights of Blinn-Phong, lit by six colours") {
+  const engine::Scene scene = tests::sceneOfGlb(apps::makeMaterialsScene());
+  engine::FrameSettings s = frameOf(160, 120, scene);
+  s.brdf = post::Brdf::BlinnPhongThresholded;
+  s.ambientDirections = {{{1, 0.5f, 0.5f}, {0.5f, 1, 0.5f}, {1.2f, 1.2f, 1.2f}, {0.1f, 0.1f, 0.2f}, {0.5f, 0.5f, 1}, {1, 1, 0.2f}}};
+  checkGolden("blinn_phong", s, scene);
 }
 
 TEST_CASE("golden: the demo scene with 4 x 4 sub-pixels a pixel") {

@@ -30,7 +30,8 @@ inline post::TransferInput transferInput(const raster::GBuffer& g, const raster:
 // open is not sampled. With stored radiance transfer.w is made of the bounced light.
 inline void runPost(PostFrame& f, const raster::Camera& camera, const post::AmbientSettings& settings,
                     std::optional<raster::Target> target, post::Occlusion occlusion = post::Occlusion::Transfer,
-                    bool skip = true, const post::AmbientLight& ambient = glm::vec3(0.9f, 1, 1.3f)) {
+                    bool skip = true, const post::AmbientLight& ambient = glm::vec3(0.9f, 1, 1.3f),
+                    post::Brdf brdf = post::Brdf::Lambert) {
   const int h = f.g.height;
   const bool stored = settings.albedo == post::TransferAlbedo::Radiance;
   const post::DisplayTable table;
@@ -41,7 +42,7 @@ inline void runPost(PostFrame& f, const raster::Camera& camera, const post::Ambi
   f.in.heights = heights;
   if (stored) {
     f.radiance = post::makeLinearColor(f.g.width, h);
-    const post::LightInput first{&f.g, nullptr, post::Occlusion::None, ambient, glm::vec3(0)};
+    const post::LightInput first{&f.g, nullptr, post::Occlusion::None, ambient, glm::vec3(0), nullptr, brdf, f.in.projector};
     target ? post::light(first, 0, h, f.radiance, *target) : post::lightRef(first, 0, h, f.radiance);
     f.in.radiance = &f.radiance;
   }
@@ -49,7 +50,7 @@ inline void runPost(PostFrame& f, const raster::Camera& camera, const post::Ambi
   f.transfer = post::makeTransfer(f.g.width, h, {true, true, stored});
   f.color = post::makeLinearColor(f.g.width, h);
   f.display = post::makeDisplayImage(f.g.width, h);
-  const post::LightInput light{&f.g, &f.transfer, occlusion, ambient, glm::vec3(0.1f, 0.2f, 0.3f)};
+  const post::LightInput light{&f.g, &f.transfer, occlusion, ambient, glm::vec3(0.1f, 0.2f, 0.3f), nullptr, brdf, f.in.projector};
   if (target) {
     f.bounds = post::makeDepthBounds(f.g.width, h);
     post::boundDepth(f.g, f.in.projector, 0, f.bounds.c.height(), f.bounds, *target);
@@ -85,6 +86,8 @@ inline raster::GBuffer hostileGBuffer(uint32_t seed) {
     for (int x = 0; x < g.width; ++x) {
       auto value = [&](float lo, float hi) { return random.integer(0, 9) ? random.real(lo, hi) : odd[random.integer(0, 8)]; };
       g.depth.at(x, y) = random.integer(0, 3) ? value(1, 3) : inf;
+      g.metallic.at(x, y) = random.integer(0, 5) ? random.real(0, 1) : -0.0f;
+      g.roughness.at(x, y) = random.integer(0, 5) ? random.real(0, 1) : float(random.integer(0, 1));
       g.depth2.at(x, y) = random.integer(0, 3) ? value(1, 4) : inf;
       for (int c = 0; c < 3; ++c) {
         g.normal[c].at(x, y) = value(-1, 1);

@@ -30,6 +30,9 @@ AmbientSettings settingsOf(uint32_t seed) {
   return s;
 }
 
+const post::AmbientLight kAmbient(glm::vec3(0.9f, 1, 1.3f));
+post::Brdf brdfOf(uint32_t seed) { return post::Brdf(seed / 2 % 4); }
+
 }  // namespace
 
 TEST_CASE("post: every pass equals its scalar twin on rendered scenes") {
@@ -38,11 +41,11 @@ TEST_CASE("post: every pass equals its scalar twin on rendered scenes") {
     PostFrame expected;
     expected.g = gbufferOf(s);
     const auto occlusion = post::Occlusion(seed % 3);
-    runPost(expected, s.camera, settingsOf(seed), std::nullopt, occlusion);
+    runPost(expected, s.camera, settingsOf(seed), std::nullopt, occlusion, true, kAmbient, brdfOf(seed));
     for (raster::Target target : raster::supportedTargets()) {
       PostFrame found;
       found.g = gbufferOf(s);
-      runPost(found, s.camera, settingsOf(seed), target, occlusion);
+      runPost(found, s.camera, settingsOf(seed), target, occlusion, true, kAmbient, brdfOf(seed));
       INFO("seed " << seed << " target " << raster::targetName(target));
       REQUIRE(firstDifference(found, expected) == "");
     }
@@ -54,7 +57,7 @@ TEST_CASE("post: whatever the G-buffer holds, twins agree and O and W lie in [0,
     const raster::Camera camera = seed % 4 == 1 ? raster::orthographic(2, 1, 0.1, 50) : raster::perspective(1, 2, 0.1);
     PostFrame expected;
     expected.g = hostileGBuffer(seed);
-    runPost(expected, camera, settingsOf(seed), std::nullopt);
+    runPost(expected, camera, settingsOf(seed), std::nullopt, post::Occlusion::Transfer, true, kAmbient, brdfOf(seed));
     const bool stored = settingsOf(seed).albedo == post::TransferAlbedo::Radiance;
     const float most = stored ? std::numeric_limits<float>::max() : 1;
     for (int y = 0; y < expected.g.height; ++y)
@@ -65,7 +68,7 @@ TEST_CASE("post: whatever the G-buffer holds, twins agree and O and W lie in [0,
     for (raster::Target target : raster::supportedTargets()) {
       PostFrame found;
       found.g = hostileGBuffer(seed);
-      runPost(found, camera, settingsOf(seed), target);
+      runPost(found, camera, settingsOf(seed), target, post::Occlusion::Transfer, true, kAmbient, brdfOf(seed));
       INFO("seed " << seed << " target " << raster::targetName(target));
       for (int c = 0; c < 3; ++c) {
         CHECK(firstDifference("transfer", found.transfer.w[c], expected.transfer.w[c]) == "");
