@@ -45,6 +45,7 @@ engine::Scene litSoup(uint32_t seed, engine::FrameSettings& f) {
   f.camera = from.camera;
   f.width = from.width, f.height = from.height;
   f.shadowSize = 64;
+  f.brdf = post::Brdf(seed % 4);
   f.transfer.radius = 0.8f;
   f.aovs = {engine::Aov::Color};
   f.display = true;
@@ -59,7 +60,7 @@ engine::Scene litSoup(uint32_t seed, engine::FrameSettings& f) {
 
 float brightness(const engine::Frame& f, int x, int y) { return f.color.rgb[1].at(x, y); }
 
-// Boxes, spheres, planes: white, without ambient light.
+// Boxes, spheres, planes: white and Lambertian, without ambient light.
 struct Stage {
   engine::Scene scene;
   engine::FrameSettings frame;
@@ -71,6 +72,7 @@ struct Stage {
     setBounds(scene, 20);
     frame.width = 120, frame.height = 90;
     frame.ambientLight = glm::vec3(0);
+    frame.brdf = post::Brdf::Lambert;
     frame.shadowSize = 256;
     frame.aovs = {engine::Aov::Color, engine::Aov::Instance, engine::Aov::Normal};
   }
