@@ -27,7 +27,7 @@ class EnvironmentMap {
 
   const EnvironmentProjector& projector() const { return projector_; }
 
-  // Panel by panel, row by row, with the border; of a cube as post::EnvironmentCube has them.
+  // Panel by panel, row by row, with the border; of a cube as post::EnvironmentChain has them.
   raster::Span<const glm::vec3> texels() const { return texels_; }
 
   // Texels from -1 to width and height: the border counts.

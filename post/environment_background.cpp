@@ -13,19 +13,14 @@ HWY_BEFORE_NAMESPACE();
 namespace obscura::post {
 namespace HWY_NAMESPACE {
 
-HWY_INLINE V3 turned(const glm::mat3& m, const V3& v) {
-  const DF d;
-  const auto row = [&](int k) { return dot({hn::Set(d, m[0][k]), hn::Set(d, m[1][k]), hn::Set(d, m[2][k])}, v); };
-  return {row(0), row(1), row(2)};
-}
-
 void EnvironmentBackground(const BackgroundInput& in, int y0, int y1, LinearColor& out) {
   const DF d;
   const DI di;
   const Projector& p = in.projector;
   const VF infinity = hn::Set(d, std::numeric_limits<float>::infinity()), half = hn::Set(d, 0.5f), zero = hn::Zero(d);
   const VF intensity = hn::Set(d, in.environment.intensity);
-  const EnvironmentCube cube = in.environment.chain.mirror();
+  const EnvironmentChain& chain = in.environment.chain;
+  const VI size = hn::Set(di, chain.sizes[0]), first = hn::Zero(di);
   for (int y = y0; y < y1; ++y) {
     const float yPx = float(p.yFirst + y) + 0.5f;
     const VF yView = p.perspective ? hn::Set(d, (yPx - p.yCenter) * p.yInverse) : zero;
@@ -34,7 +29,7 @@ void EnvironmentBackground(const BackgroundInput& in, int y0, int y1, LinearColo
       if (hn::AllTrue(d, seen)) continue;
       const VF xPx = hn::Add(hn::ConvertTo(d, hn::Iota(di, p.xFirst + x)), half);
       const VF xView = p.perspective ? hn::Mul(hn::Sub(xPx, hn::Set(d, p.xCenter)), hn::Set(d, p.xInverse)) : zero;
-      const V3 radiance = cubeLookUp(cube, turned(in.environment.mapFromView, {xView, yView, hn::Set(d, -1.0f)}));
+      const V3 radiance = cubeLookUp(chain.texels.data(), cubePointOf(turned(in.environment.mapFromView, {xView, yView, hn::Set(d, -1.0f)})), size, first);
       const VF channels[3] = {radiance.x, radiance.y, radiance.z};
       for (int c = 0; c < 3; ++c) {
         float* to = out.rgb[c].row(y) + x;
