@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "obscura/apps/cache_folder.h"
 #include "obscura/apps/option_text.h"
 #include "obscura/apps/setting_names.h"
 #include "obscura/engine/extended_ambient.h"
@@ -185,6 +186,12 @@ void addEnvironment(CLI::App& app, FrameOptions& o) {
   };
   addRead(app, "--env-rotate", "DEGREES", "turns the map around the vertical (+y), counter-clockwise seen from above [0]",
           inRange(-engine::kMostRotation, engine::kMostRotation, e.rotation))
+      ->needs(file)
+      ->group(group);
+  app.add_option("--env-cache", e.cache,
+                 "folder to keep what is made of the map in, by the hash of its file [$OBSCURA_CACHE, else $XDG_CACHE_HOME/obscura, "
+                 "else ~/.cache/obscura]; none: it is made again each time")
+      ->type_name("DIR|none")
       ->needs(file)
       ->group(group);
   addRead(app, "--env-intensity", "FACTOR", "on the map's radiance, 0 to 10^6 [1]", inRange(0, engine::kMostIntensity, e.intensity))
@@ -431,7 +438,8 @@ engine::Result<ResolvedFrame> FrameOptions::resolve(const engine::Scene& in) con
   if (!environment.file.empty()) {
     engine::Result<engine::Environment> read =
         engine::readEnvironment(environment.file, environment.projection,
-                                environment.background ? engine::EnvironmentParts::Background : engine::EnvironmentParts::Light, raster.threads);
+                                environment.background ? engine::EnvironmentParts::Background : engine::EnvironmentParts::Light, raster.threads,
+                                environment.cache ? (*environment.cache == "none" ? "" : *environment.cache) : defaultCacheFolder());
     if (!read) return read.error();
     out.frame.environment = std::make_shared<const engine::Environment>(std::move(*read));
     out.frame.environmentRotation = environment.rotation;

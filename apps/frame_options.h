@@ -30,6 +30,7 @@ struct EnvironmentOptions {
   engine::EnvironmentProjection projection = engine::EnvironmentProjection::Latlong;
   double rotation = 0, intensity = 1;  // as in engine::FrameSettings
   bool background = false;
+  std::optional<std::string> cache;  // folder, or "none"; empty: defaultCacheFolder()
 };
 
 struct LightOptions {

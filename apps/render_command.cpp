@@ -227,8 +227,9 @@ int RenderCommand::render() {
   if (!resolved) return failed(resolved.error());
   run.environment = watch.lap();
   progress.clear();
-  if (resolved->frame.environment)
-    for (const std::string& warning : resolved->frame.environment->warnings) printWarning(warning);
+  if (resolved->frame.environment && resolved->frame.environment->clamped > 0)
+    printWarning(options_.environment.file + ": " + std::to_string(resolved->frame.environment->clamped) +
+                 " values are negative, no numbers or too large: clamped");
   resolved->frame.aovs = aovs;
   resolved->frame.display = std::find(aovs.begin(), aovs.end(), Aov::Color) != aovs.end();
   engine::Renderer renderer(resolved->raster, resolved->reference);

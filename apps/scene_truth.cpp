@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdio>
 
+#include "obscura/apps/cache_folder.h"
 #include "obscura/apps/truth_cache.h"
 #include "obscura/raster/stopwatch.h"
 
@@ -20,7 +21,7 @@ void TruthOptions::addTo(CLI::App& app) {
       })
       ->capture_default_str()
       ->group(group);
-  app.add_option("--cache", cache, "folder to keep truths in [$XDG_CACHE_HOME/obscura, else ~/.cache/obscura]")
+  app.add_option("--cache", cache, "folder to keep truths in [$OBSCURA_CACHE, else $XDG_CACHE_HOME/obscura, else ~/.cache/obscura]")
       ->type_name("DIR")
       ->group(group);
   app.add_flag("--no-cache", noCache, "trace it, and keep nothing")->group(group);

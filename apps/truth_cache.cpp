@@ -1,15 +1,12 @@
 #include "obscura/apps/truth_cache.h"
 
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <type_traits>
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-#include "obscura/engine/image_file.h"
+#include "obscura/engine/content_cache.h"
 
 namespace obscura::apps {
 namespace {
@@ -81,10 +78,8 @@ std::vector<uint8_t> payloadOf(const Truth& t) {
   return bytes;
 }
 
-std::string headerOf(const std::string& key, int width, int height, const std::vector<uint8_t>& payload) {
-  Hash hash;
-  hash.addAll(payload);
-  return std::string(kVersion) + "\n" + key + "\n" + std::to_string(width) + "x" + std::to_string(height) + " " + hash.text() + "\n";
+std::string titleOf(const std::string& key, int width, int height) {
+  return std::string(kVersion) + "\n" + key + "\n" + std::to_string(width) + "x" + std::to_string(height);
 }
 
 }  // namespace
@@ -120,31 +115,14 @@ std::string truthKey(const engine::Scene& scene, const RaySurface& surface, cons
   return hash.text();
 }
 
-std::string defaultCacheFolder() {
-  const auto absolute = [](const char* variable) {
-    const char* value = std::getenv(variable);
-    return std::string(value && value[0] == '/' ? value : "");
-  };
-  if (const std::string cache = absolute("XDG_CACHE_HOME"); !cache.empty()) return cache + "/obscura";
-  const std::string home = absolute("HOME");
-  return home.empty() ? home : home + "/.cache/obscura";
-}
-
 std::string truthFile(const std::string& folder, const std::string& key) { return folder + "/truth-" + key + ".bin"; }
 
 std::optional<Truth> loadTruth(const std::string& file, const std::string& key, int width, int height) {
-  std::error_code error;
-  const uintmax_t size = std::filesystem::file_size(file, error);
-  const size_t bytes = size_t(width) * size_t(height) * 4 * 2 * kTruthQuantities;
-  if (error || size < bytes || size > bytes + 4096) return std::nullopt;
-  std::ifstream in(file, std::ios::binary);
-  std::string header(size - bytes, '\0');
-  std::vector<uint8_t> payload(bytes);
-  in.read(header.data(), std::streamsize(header.size()));
-  in.read(reinterpret_cast<char*>(payload.data()), std::streamsize(payload.size()));
-  if (!in || header != headerOf(key, width, height, payload)) return std::nullopt;
+  const size_t size = size_t(width) * size_t(height) * 4 * 2 * kTruthQuantities;
+  const std::optional<std::vector<uint8_t>> bytes = engine::loadCached(file, titleOf(key, width, height), size);
+  if (!bytes || bytes->size() != size) return std::nullopt;
   Truth t(width, height);
-  const uint8_t* from = payload.data();
+  const uint8_t* from = bytes->data();
   for (auto* planes : {t.value, t.error})
     for (int q = 0; q < kTruthQuantities; ++q)
       for (int y = 0; y < height; ++y, from += size_t(width) * 4) std::memcpy(planes[q].row(y), from, size_t(width) * 4);
@@ -152,15 +130,7 @@ std::optional<Truth> loadTruth(const std::string& file, const std::string& key, 
 }
 
 engine::Result<engine::Done> storeTruth(const std::string& file, const std::string& key, const Truth& truth) {
-  std::error_code error;
-  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
-  std::filesystem::create_directories(folder, error);
-  if (error) return engine::Error{engine::ErrorCode::CannotWrite, "cannot make the folder: " + error.message(), folder.string(), ""};
-  const std::vector<uint8_t> payload = payloadOf(truth);
-  const std::string header = headerOf(key, truth.value[0].width(), truth.value[0].height(), payload);
-  std::vector<uint8_t> bytes(header.begin(), header.end());
-  bytes.insert(bytes.end(), payload.begin(), payload.end());
-  return engine::writeFileAtomically(file, {bytes.data(), bytes.size()});
+  return engine::storeCached(file, titleOf(key, truth.value[0].width(), truth.value[0].height()), payloadOf(truth));
 }
 
 }  // namespace obscura::apps

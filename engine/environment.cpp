@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <optional>
+#include <vector>
 
+#include "obscura/engine/environment_cache.h"
 #include "obscura/engine/environment_map.h"
+#include "obscura/engine/image_file.h"
 #include "obscura/raster/float_environment.h"
 
 namespace obscura::engine {
@@ -22,13 +26,21 @@ Environment environmentOf(const EnvironmentMap& map, EnvironmentParts parts, ras
   return out;
 }
 
-Result<Environment> readEnvironment(const std::string& path, EnvironmentProjection projection, EnvironmentParts parts, int threads) try {
+Result<Environment> readEnvironment(const std::string& path, EnvironmentProjection projection, EnvironmentParts parts, int threads,
+                                    const std::string& cacheFolder) try {
   const raster::FloatEnvironment environment;
+  const Result<std::vector<uint8_t>> bytes = readImageBytes(path);
+  if (!bytes) return bytes.error();
+  std::optional<EnvironmentCache> cache;
+  if (!cacheFolder.empty()) cache.emplace(cacheFolder, *bytes, projection, parts);
+  if (cache)
+    if (std::optional<Environment> kept = cache->load()) return std::move(*kept);
   raster::Parallel parallel(threads);
-  const Result<EnvironmentFile> file = readEnvironmentMap(path, projection, parallel);
+  const Result<EnvironmentFile> file = decodeEnvironmentMap(*bytes, path, projection, parallel);
   if (!file) return file.error();
   Environment out = environmentOf(file->map, parts, parallel);
-  if (file->clamped > 0) out.warnings.push_back(path + ": " + std::to_string(file->clamped) + " values are negative, no numbers or too large: clamped");
+  out.clamped = file->clamped;
+  if (cache) cache->store(out);
   return out;
 } catch (const std::bad_alloc&) {
   return Error{ErrorCode::BadInput, "out of memory", path, ""};

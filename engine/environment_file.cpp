@@ -65,8 +65,17 @@ size_t readRow(const Reader& in, EnvironmentMap& map, int panel, int y) {
 }  // namespace
 
 Result<EnvironmentFile> readEnvironmentMap(const std::string& path, EnvironmentProjection projection, raster::Parallel& parallel) try {
+  const Result<std::vector<uint8_t>> bytes = readImageBytes(path, kLimits);
+  if (!bytes) return bytes.error();
+  return decodeEnvironmentMap(*bytes, path, projection, parallel);
+} catch (const std::bad_alloc&) {
+  return badMap(path, "out of memory");
+}
+
+Result<EnvironmentFile> decodeEnvironmentMap(raster::Span<const uint8_t> bytes, const std::string& path, EnvironmentProjection projection,
+                                             raster::Parallel& parallel) try {
   const raster::FloatEnvironment environment;
-  const Result<Image> image = readImage(path, kLimits);
+  const Result<Image> image = decodeImage(bytes, path, kLimits);
   if (!image) return image.error();
   const std::string size = std::to_string(image->width) + " x " + std::to_string(image->height);
   const std::optional<EnvironmentProjector> p = projectorOfImage(projection, image->width, image->height);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -81,5 +82,9 @@ struct EnvironmentFile {
 // Reads any image file: floats are linear radiance, integers sRGB (8 and 16 bits), grey is replicated, alpha is ignored.
 // BadInput: no image, or none of a size that a map of this projection has.
 Result<EnvironmentFile> readEnvironmentMap(const std::string& path, EnvironmentProjection projection, raster::Parallel& parallel);
+
+// The same from its bytes; `name` is that of error messages.
+Result<EnvironmentFile> decodeEnvironmentMap(raster::Span<const uint8_t> file, const std::string& name, EnvironmentProjection projection,
+                                             raster::Parallel& parallel);
 
 }  // namespace obscura::engine

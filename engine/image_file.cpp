@@ -164,6 +164,12 @@ Result<Image> decodeImage(Bytes file, const std::string& name, const DecodeLimit
   return outOfMemory(ErrorCode::BadInput, name);
 }
 
+Result<std::vector<uint8_t>> readImageBytes(const std::string& path, const DecodeLimits& limits) try {
+  return readBytes(path, limits.bytes);
+} catch (const std::bad_alloc&) {
+  return outOfMemory(ErrorCode::BadInput, path);
+}
+
 Result<Image> readImage(const std::string& path, const DecodeLimits& limits) {
   return mainLayer(readLayers(path, limits), path);
 }

@@ -28,6 +28,9 @@ Result<Image> decodeImageRgba8(raster::Span<const uint8_t> file, const std::stri
 // The same in its own channels and format, as readImage does it with a file.
 Result<Image> decodeImage(raster::Span<const uint8_t> file, const std::string& name, const DecodeLimits& limits = {});
 
+// A whole file, of at most limits.bytes; the names of the errors are the path.
+Result<std::vector<uint8_t>> readImageBytes(const std::string& path, const DecodeLimits& limits = {});
+
 // Reads any image file in its own channels and format (8, 16 and 32 bit unsigned integers stay, everything else
 // becomes F32). Of a file with several layers the first, or the one named "color".
 Result<Image> readImage(const std::string& path, const DecodeLimits& limits = {});

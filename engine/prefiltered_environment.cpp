@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kLevels = post::kRoughnessLevels;
 // Texels a side: about three or more across the lobe's width at half its height, 1.28 alpha 2 radians.
-constexpr int kSides[kLevels] = {0, 96, 64, 32, 32, 32, 16, 16, 16};
+constexpr int kSides[kLevels] = {0, 96, 48, 32, 24, 24, 16, 16, 16};
 constexpr int kLeaves = 128;  // a side of a face
 constexpr int kBlock = 4;     // texels a side that share a list of nodes
 // A node's radius over its distance, or the lobe's width 2 alpha where that is more; and at most. 0.5 errs by 1.3 % at level 3;

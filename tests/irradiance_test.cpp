@@ -136,7 +136,6 @@ TEST_CASE("irradiance: an environment from a file has the light of its map, and 
   const auto read = engine::readEnvironment(folder / "a.pfm", Projection::Latlong, engine::EnvironmentParts::Light, 2);
   REQUIRE(read.ok());
   CHECK(engine::irradiance(read->harmonics, {0, 1, 0}).x == Approx(2 * kPi).epsilon(0.01));
-  REQUIRE(read->warnings.size() == 1);
-  CHECK(read->warnings[0].find("1 values") != std::string::npos);
+  CHECK(read->clamped == 1);
   CHECK_FALSE(engine::readEnvironment(folder / "a.pfm", Projection::Cube, engine::EnvironmentParts::Background, 2).ok());
 }
