@@ -438,7 +438,10 @@ engine::Result<ResolvedFrame> FrameOptions::resolve(const engine::Scene& in) con
   if (!environment.file.empty()) {
     engine::Result<engine::Environment> read =
         engine::readEnvironment(environment.file, environment.projection,
-                                environment.background ? engine::EnvironmentParts::Background : engine::EnvironmentParts::Light, raster.threads,
+                                isGlossy(brdf)           ? engine::EnvironmentParts::Reflections
+                                : environment.background ? engine::EnvironmentParts::Background
+                                                         : engine::EnvironmentParts::Light,
+                                raster.threads,
                                 environment.cache ? (*environment.cache == "none" ? "" : *environment.cache) : defaultCacheFolder());
     if (!read) return read.error();
     out.frame.environment = std::make_shared<const engine::Environment>(std::move(*read));

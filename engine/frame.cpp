@@ -14,6 +14,7 @@
 #include "obscura/engine/frame_needs.h"
 #include "obscura/post/asked.h"
 #include "obscura/post/environment_background.h"
+#include "obscura/post/environment_reflection.h"
 #include "obscura/post/transfer_samples.h"
 #include "obscura/raster/float_environment.h"
 #include "obscura/raster/parallel.h"
@@ -215,11 +216,18 @@ void Renderer::State::drawTransfer(const FrameSettings& s, const FrameNeeds& nee
 
 void Renderer::State::drawLight(const FrameSettings& s, const FrameNeeds& needs, Frame& out) {
   const post::Projector projector = post::makeProjector(s.camera, s.width, s.height, outputWindow(s));
-  const post::LightInput in{&out.g, &out.transfer, needs.occlusion, ambient, s.background, needs.direct ? &direct : nullptr, needs.brdf, projector};
+  post::LightInput in{&out.g, &out.transfer, needs.occlusion, ambient, s.background, needs.direct ? &direct : nullptr, needs.brdf, projector};
+  post::ReflectionInput mirrors;
+  if (needs.reflections) {
+    mirrors = {&out.g, needs.occlusion == post::Occlusion::None ? nullptr : &out.transfer.obscurance, projector, environmentViewOf(s), ambient.instances};
+    in.reflected = &out.color;
+  }
   if (needs.color) {
     for (int c = 0; overSums && c < 3; ++c) out.color.rgb[c] = std::exchange(sums.denominator[c], {});
     out.color = post::makeLinearColor(out.width, out.height, std::move(out.color));
     forRows(0, out.height, [&](int y0, int y1) {
+      if (needs.reflections)
+        reference ? post::environmentReflectionRef(mirrors, y0, y1, out.color) : post::environmentReflection(mirrors, y0, y1, out.color, target);
       reference ? post::lightRef(in, y0, y1, out.color) : post::light(in, y0, y1, out.color, target);
     });
   }

@@ -41,7 +41,8 @@ struct FrameSettings {
   // normal: colours from +x, -x, +y, -y, +z and -z of the world, see post::AmbientLight.
   glm::vec3 ambientLight{1};
   std::optional<std::array<glm::vec3, 6>> ambientDirections;
-  // In place of ambientLight; node groups of their own keep theirs, and directions are factors on it, too.
+  // In place of ambientLight; node groups of their own keep theirs, and directions are factors on it, too. If it has reflections,
+  // they are the specular light of a glossy BRDF, without those factors.
   std::shared_ptr<const Environment> environment;
   double environmentRotation = 0;   // degrees around +y of the world, counter-clockwise seen from above
   double environmentIntensity = 1;  // a factor on it, 0 ... 10^6

@@ -42,8 +42,9 @@ FrameNeeds needsOf(const Scene& scene, const FrameSettings& s) {
   n.albedo = w && !n.radiance;
   n.transfer.bounced = n.radiance;
   n.transfer.w = n.radiance ? wants(Aov::Transfer) : w;
-  n.transfer.obscurance =
-      wants(Aov::Obscurance) || n.radiance || n.occlusion == post::Occlusion::Obscurance;
+  n.reflections = n.color && isGlossy(s.brdf) && s.environment && s.environment->cubes.hasReflections();
+  n.transfer.obscurance = wants(Aov::Obscurance) || n.radiance || n.occlusion == post::Occlusion::Obscurance ||
+                          (n.reflections && n.occlusion != post::Occlusion::None);
   n.sums = w || n.transfer.obscurance;
   n.onlyLit = n.sums && !wants(Aov::Obscurance) && !wants(Aov::Transfer) && hasDarkThings(scene, s.brdf);
   const bool lights = n.color || n.radiance;

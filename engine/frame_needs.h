@@ -15,6 +15,7 @@ struct FrameNeeds {
   bool albedo = false;    // of what occludes, or of the pixel itself
   bool radiance = false;  // of what occludes
   bool direct = false;    // lights
+  bool reflections = false;  // of the environment
   post::Brdf brdf = post::Brdf::Lambert;  // of what is lit
   bool onlyLit = false;   // O and W are for the colour alone, and some pixels may reflect nothing
 };

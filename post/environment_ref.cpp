@@ -76,7 +76,9 @@ void environmentReflectionRef(const ReflectionInput& in, int y0, int y1, LinearC
       const float cosine = n.x * v.x + n.y * v.y + n.z * v.z, given = g.roughness.at(x, y);
       const float roughness = given > 0 ? std::min(given, 1.0f) : given <= 0 ? 0 : 1;  // no number: 1
       const glm::vec3 r = 2 * cosine * n - v;
-      glm::vec3 light = trilinear(in.environment.chain, turned(in.environment.mapFromView, r), roughness) * in.environment.intensity;
+      const float alpha = roughness * roughness, s = 1 - alpha;
+      const glm::vec3 along = n + (r - n) * (s * (std::sqrt(s) + alpha));
+      glm::vec3 light = trilinear(in.environment.chain, turned(in.environment.mapFromView, along), roughness) * in.environment.intensity;
       if (!in.instances.empty() && g.instance.at(x, y) < in.instances.size()) light = in.instances[g.instance.at(x, y)];
       if (in.obscurance) {
         const float facing = std::fabs(cosine) > kLeastFacing ? std::min(std::fabs(cosine), 1.0f) : kLeastFacing;

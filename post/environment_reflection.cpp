@@ -41,6 +41,12 @@ class Chain {
   int32_t sizes_[kRoughnessLevels], firsts_[kRoughnessLevels];
 };
 
+// Along which the light of a lobe around r is looked up.
+HWY_INLINE V3 dominant(const V3& n, const V3& r, VF roughness) {
+  const VF alpha = hn::Mul(roughness, roughness), s = hn::Sub(hn::Set(DF(), 1.0f), alpha), f = hn::Mul(s, hn::Add(hn::Sqrt(s), alpha));
+  return {lerp(n.x, r.x, f), lerp(n.y, r.y, f), lerp(n.z, r.z, f)};
+}
+
 HWY_INLINE VF specularOcclusion(VF o, VF nv, VF roughness) {
   const DF d;
   const VF one = hn::Set(d, 1.0f), zero = hn::Zero(d);
@@ -79,7 +85,7 @@ void EnvironmentReflection(const ReflectionInput& in, int y0, int y1, LinearColo
       const VF roughness = hn::IfThenElseZero(hn::And(seen, hn::Gt(kept, zero)), kept);
       const VF cosine = dot(n, v), twice = hn::Add(cosine, cosine);
       const V3 r{hn::Sub(hn::Mul(twice, n.x), v.x), hn::Sub(hn::Mul(twice, n.y), v.y), hn::Sub(hn::Mul(twice, n.z), v.z)};
-      V3 light = chain.at(turned(in.environment.mapFromView, r), roughness);
+      V3 light = chain.at(turned(in.environment.mapFromView, dominant(n, r, roughness)), roughness);
       light = {hn::Mul(light.x, intensity), hn::Mul(light.y, intensity), hn::Mul(light.z, intensity)};
       if (!in.instances.empty()) light = orOfInstance(in, x, y, light);
       if (in.obscurance) {

@@ -103,15 +103,20 @@ HWY_INLINE MF seenAt(const raster::GBuffer& g, int x, int y) {
   return hn::Lt(hn::LoadU(DF(), g.depth.row(y) + x), hn::Set(DF(), kInfinity));
 }
 
-// R_A(v).
+// R_A(v), or its two parts where each gets another light.
+struct Reflectances {
+  V3 ambient, mirrored;
+};
+
 template <Brdf kBrdf>
-HWY_INLINE V3 ambientReflectance(const raster::GBuffer& g, const ViewDirections& directions, int x, int y) {
+HWY_INLINE Reflectances reflectances(const raster::GBuffer& g, const ViewDirections& directions, bool apart, int x, int y) {
   const DF d;
   const V3 base = loaded(g.albedo, x, y);
-  if constexpr (!isGlossy(kBrdf)) return base;
+  if constexpr (!isGlossy(kBrdf)) return {base, base};
   const Reflection<kBrdf> r(base, hn::LoadU(d, g.metallic.row(y) + x), hn::LoadU(d, g.roughness.row(y) + x), loaded(g.normal, x, y),
                             directions.at(x, y));
-  return {hn::Add(r.diffuse.x, r.specular.x), hn::Add(r.diffuse.y, r.specular.y), hn::Add(r.diffuse.z, r.specular.z)};
+  if (apart) return {r.diffuse, r.specular};
+  return {{hn::Add(r.diffuse.x, r.specular.x), hn::Add(r.diffuse.y, r.specular.y), hn::Add(r.diffuse.z, r.specular.z)}, r.specular};
 }
 
 template <bool kVaries, Brdf kBrdf>
@@ -123,12 +128,14 @@ void lightRows(const LightInput& in, int y0, int y1, LinearColor& out) {
   const bool emits = !g.emissive[0].empty();
   const bool bounced = in.occlusion == Occlusion::Transfer && !in.transfer->bounced[0].empty();
   const bool obscured = in.occlusion == Occlusion::Obscurance || bounced;
+  const bool mirrors = isGlossy(kBrdf) && in.reflected;
   for (int y = y0; y < y1; ++y)
     for (int x = 0; x < g.width; x += int(hn::Lanes(d))) {
       const MF seen = seenAt(g, x, y);
       const V3 la = ambient.at(x, y);
-      const V3 reflectance = ambientReflectance<kBrdf>(g, directions, x, y);
-      const VF channels[3] = {la.x, la.y, la.z}, colors[3] = {reflectance.x, reflectance.y, reflectance.z};
+      const Reflectances r = reflectances<kBrdf>(g, directions, mirrors, x, y);
+      const VF channels[3] = {la.x, la.y, la.z}, colors[3] = {r.ambient.x, r.ambient.y, r.ambient.z};
+      const VF mirrored[3] = {r.mirrored.x, r.mirrored.y, r.mirrored.z};
       for (int c = 0; c < 3; ++c) {
         VF color = colors[c];
         if (bounced) {
@@ -139,6 +146,7 @@ void lightRows(const LightInput& in, int y0, int y1, LinearColor& out) {
           else if (in.occlusion == Occlusion::Transfer) color = hn::Mul(color, hn::LoadU(d, in.transfer->w[c].row(y) + x));
           color = hn::Mul(color, channels[c]);
         }
+        if (mirrors) color = hn::Add(color, hn::Mul(mirrored[c], hn::LoadU(d, in.reflected->rgb[c].row(y) + x)));
         if (in.direct) color = hn::Add(color, hn::LoadU(d, in.direct->rgb[c].row(y) + x));
         if (emits) color = hn::Add(color, hn::LoadU(d, g.emissive[c].row(y) + x));
         hn::StoreU(hn::IfThenElse(seen, color, hn::Set(d, in.background[c])), d, out.rgb[c].row(y) + x);

@@ -1,5 +1,5 @@
 // In:  albedo, emission, depth; O, W or the bounced light; what La and the ambient reflectance R_A depend on; the light of
-//      direct lights that is reflected.
+//      direct lights that is reflected; what mirrors show.
 // Out: linear colour, Lr = R_A W La + direct + emission (long paper, equation 2, where R_A is a; brdf.h).
 #pragma once
 
@@ -29,6 +29,9 @@ struct LightInput {
   const LinearColor* direct = nullptr; // reflected, see direct_light.h; of the G-buffer's size; null: none
   Brdf brdf = Brdf::Lambert;
   Projector projector = {};            // of a glossy BRDF: where the G-buffer's pixels look
+  // Of a glossy BRDF, what arrives from where it mirrors (environment_reflection.h), in place of La and what modulates it in the
+  // specular part of R_A: Lr = kd W La + S(v) reflected + emission. Null: La there, too. May be what light() writes to.
+  const LinearColor* reflected = nullptr;
 };
 
 // Without occlusion this is also a first guess of what the occluders send back, see TransferInput::radiance: their

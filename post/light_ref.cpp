@@ -43,16 +43,15 @@ glm::vec3 vectorAt(const raster::Plane<float> (&planes)[3], int x, int y) {
   return {planes[0].at(x, y), planes[1].at(x, y), planes[2].at(x, y)};
 }
 
-// R_A(v)
-glm::vec3 reflectanceAt(const LightInput& in, int x, int y) {
+// The parts of R_A(v); of Lambert all of it is diffuse.
+ref::Reflectance reflectanceAt(const LightInput& in, int x, int y) {
   const raster::GBuffer& g = *in.g;
   ref::Surface s;
   s.base = vectorAt(g.albedo, x, y);
-  if (!isGlossy(in.brdf)) return s.base;
+  if (!isGlossy(in.brdf)) return {s.base, glm::vec3(0)};
   s.metallic = g.metallic.at(x, y), s.roughness = g.roughness.at(x, y);
   s.n = vectorAt(g.normal, x, y), s.v = ref::viewDirection(in.projector, x, y);
-  const ref::Reflectance r = ref::ambientReflectance(in.brdf, s);
-  return r.diffuse + r.specular;
+  return ref::ambientReflectance(in.brdf, s);
 }
 
 }  // namespace
@@ -62,15 +61,18 @@ void lightRef(const LightInput& in, int y0, int y1, LinearColor& out) {
   const raster::GBuffer& g = *in.g;
   for (int y = y0; y < y1; ++y)
     for (int x = 0; x < g.width; ++x) {
-      const glm::vec3 la = ambientAt(in.ambient, g, x, y), reflectance = reflectanceAt(in, x, y);
+      const glm::vec3 la = ambientAt(in.ambient, g, x, y);
+      const ref::Reflectance r = reflectanceAt(in, x, y);
+      const bool mirrors = isGlossy(in.brdf) && in.reflected;
       for (int c = 0; c < 3; ++c) {
-        const float a = reflectance[c];
+        const float a = mirrors || !isGlossy(in.brdf) ? r.diffuse[c] : r.diffuse[c] + r.specular[c];
         float reflected = a * la[c];
         if (in.occlusion == Occlusion::Obscurance) reflected = a * in.transfer->obscurance.at(x, y) * la[c];
         if (in.occlusion == Occlusion::Transfer)
           reflected = in.transfer->bounced[c].empty()
                           ? a * in.transfer->w[c].at(x, y) * la[c]
                           : a * (in.transfer->obscurance.at(x, y) * la[c] + in.transfer->bounced[c].at(x, y));
+        if (mirrors) reflected += r.specular[c] * in.reflected->rgb[c].at(x, y);
         if (in.direct) reflected += in.direct->rgb[c].at(x, y);
         const float emitted = g.emissive[c].empty() ? 0 : g.emissive[c].at(x, y);
         out.rgb[c].at(x, y) = isSeen(g, x, y) ? reflected + emitted : in.background[c];

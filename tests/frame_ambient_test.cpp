@@ -27,10 +27,11 @@ engine::FrameSettings settingsOf(const TestScene& scene) {
 
 // A wall across the view of a camera that looks along `view` of the world.
 engine::Frame wallSeenAlong(const glm::dvec3& view, const std::optional<glm::vec3>& group,
-                            std::shared_ptr<const engine::Environment> environment = {}, double rotation = 0) {
+                            std::shared_ptr<const engine::Environment> environment = {}, double rotation = 0, float roughness = 1) {
   TestScene s;
   s.materials.resize(1);
   s.materials[0].doubleSided = true;
+  s.materials[0].roughness = roughness;
   TestMesh& wall = s.addMesh();
   const glm::dvec3 up = view.y != 0 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0), right = glm::cross(view, up);
   const glm::vec3 r(right * 9.0), u(up * 9.0), c(view * 3.0);
@@ -66,7 +67,7 @@ TEST_CASE("ambient frames: directions are the world's: a wall that faces +x is l
 namespace {
 
 // A map whose radiance is 1 + 0.5 d . to.
-std::shared_ptr<const engine::Environment> lightFrom(const glm::dvec3& to) {
+std::shared_ptr<const engine::Environment> lightFrom(const glm::dvec3& to, bool reflections = false) {
   raster::Parallel parallel(1);
   engine::EnvironmentMap map({engine::EnvironmentProjection::Latlong, 32, 16});
   for (int y = 0; y < 16; ++y)
@@ -74,7 +75,8 @@ std::shared_ptr<const engine::Environment> lightFrom(const glm::dvec3& to) {
   map.fillBorders(parallel);
   auto out = std::make_shared<engine::Environment>();
   out->harmonics = engine::harmonicsOf(map, parallel);
-  out->cubes = mirrorOf(convertEnvironment(map, {engine::EnvironmentProjection::Cube, 12, 12}, parallel));
+  const engine::EnvironmentMap cube = convertEnvironment(map, {engine::EnvironmentProjection::Cube, 12, 12}, parallel);
+  out->cubes = reflections ? prefiltered(cube, parallel) : mirrorOf(cube);
   return out;
 }
 
@@ -95,11 +97,42 @@ TEST_CASE("ambient frames: an environment's directions are the world's, and it t
   CHECK(wallSeenAlong({0, 0, 1}, glm::vec3(2, 4, 8), lightFrom({1, 0, 0})).color.rgb[0].at(35, 25) == 2);  // a group of its own
 }
 
+TEST_CASE("ambient frames: a mirror shows the environment in the direction of reflection, turned as the background, and rough metal a blurred one") {
+  for (int k = 0; k < 6; ++k) {
+    glm::dvec3 faces(0);
+    faces[k / 2] = k % 2 ? -1 : 1;
+    const glm::dvec3 view = -faces, up = view.y != 0 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0), right = glm::cross(view, up);
+    const glm::dvec3 to = glm::normalize(glm::dvec3(0.2, 0.5, -0.8));
+    const glm::dvec3 turned(to.z, to.y, -to.x);  // by 90 degrees around +y, counter-clockwise seen from above
+    const engine::Frame f = wallSeenAlong(view, std::nullopt, lightFrom(to, true), 90, 0);
+    const engine::Frame rough = wallSeenAlong(view, std::nullopt, lightFrom(to, true), 90, 1);
+    double worst = 0;
+    for (int y = 0; y < f.height; y += 7)
+      for (int x = 0; x < f.width; x += 7) {
+        const double sy = (1 - (y + 0.5) / 25) * std::tan(0.35), sx = ((x + 0.5) / 35 - 1) * std::tan(0.35) * 1.4;
+        const glm::dvec3 r = glm::normalize(right * sx + up * sy + faces);
+        worst = std::max(worst, std::fabs(f.color.rgb[0].at(x, y) - (1 + 0.5 * glm::dot(r, turned))));
+      }
+    CAPTURE(k);
+    CHECK(worst < 0.01);
+    // Averaged over the cosine lobe, as alpha = 1 makes it: 2/3 of the deviation.
+    CHECK(rough.color.rgb[0].at(35, 25) == Approx(1 + 0.5 * 2 / 3 * glm::dot(faces, turned)).margin(0.01));
+  }
+}
+
+TEST_CASE("ambient frames: a white object in a white environment disappears whatever its roughness") {
+  auto white = std::make_shared<engine::Environment>(*lightFrom({0, 0, 0}, true));
+  for (float roughness : {0.f, 0.05f, 0.4f, 1.f}) {
+    const engine::Frame f = wallSeenAlong({0, 0, -1}, std::nullopt, white, 0, roughness);
+    for (int x = 0; x < f.width; x += 3) CHECK(f.color.rgb[1].at(x, 20) == Approx(1).margin(1e-5));
+  }
+}
+
 TEST_CASE("ambient frames: lit by an environment they have one digest for threads, targets, tiles, skipping and the twins") {
   const TestScene soup = soupScene(4);
   const engine::Scene scene = sceneFrom(soup);
   engine::FrameSettings s = settingsOf(soup);
-  s.environment = lightFrom({0.48, 0.64, 0.6});
+  s.environment = lightFrom({0.48, 0.64, 0.6}, true);
   s.environmentRotation = 33;
   s.environmentIntensity = 1.7;
   s.environmentBackground = true;

@@ -119,9 +119,9 @@ TEST_CASE("golden: the demo scene in an orthographic view, obscurance only") {
   checkGolden("orthographic", s);
 }
 
-TEST_CASE("golden: the demo scene in the light of an environment, before it, displayed by the neutral curve") {
-  engine::FrameSettings s = frameOf(160, 120);
-  raster::Parallel parallel(2);
+namespace {
+
+engine::EnvironmentMap goldenSky(raster::Parallel& parallel) {
   engine::EnvironmentMap map({engine::EnvironmentProjection::Latlong, 128, 64});
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 128; ++x) {  // blue above, brown below, a sun above -x and -z, and lines of longitude and latitude
@@ -131,6 +131,15 @@ TEST_CASE("golden: the demo scene in the light of an environment, before it, dis
       map.at(0, x, y) = sun ? glm::vec3(40, 36, 30) : line ? sky * 0.6f : sky;
     }
   map.fillBorders(parallel);
+  return map;
+}
+
+}  // namespace
+
+TEST_CASE("golden: the demo scene in the light of an environment, before it, displayed by the neutral curve") {
+  engine::FrameSettings s = frameOf(160, 120);
+  raster::Parallel parallel(2);
+  const engine::EnvironmentMap map = goldenSky(parallel);
   auto environment = std::make_shared<engine::Environment>();
   environment->harmonics = engine::harmonicsOf(map, parallel);
   environment->cubes = mirrorOf(convertEnvironment(map, {engine::EnvironmentProjection::Cube, 48, 48}, parallel));
@@ -177,6 +186,17 @@ TEST_CASE("golden: metal, lacquer and tiles, from smooth to rough") {
   engine::FrameSettings s = frameOf(160, 120, scene);
   s.supersample = 2;
   checkGolden("materials", s, scene);
+}
+
+TEST_CASE("golden: the same reflects the environment that it stands in, by roughness") {
+  const engine::Scene scene = tests::sceneOfGlb(apps::makeMaterialsScene());
+  engine::FrameSettings s = frameOf(160, 120, scene);
+  raster::Parallel parallel(2);
+  s.environment = std::make_shared<engine::Environment>(environmentOf(goldenSky(parallel), engine::EnvironmentParts::Reflections, parallel));
+  s.environmentRotation = 200;
+  s.environmentBackground = true;
+  s.tone = {post::ToneCurve::Neutral, 1};
+  checkGolden("reflections", s, scene);
 }
 
 TEST_CASE("golden: the same with thresholded highlights of Blinn-Phong, lit by six colours") {

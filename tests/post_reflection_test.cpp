@@ -133,6 +133,20 @@ TEST_CASE("environment reflection: a mirror shows what lies in the direction r =
   }
 }
 
+TEST_CASE("environment reflection: what is rough looks nearer its normal, and along it in the end") {
+  Pixel p(asLight);
+  const glm::vec3 n(0.6f, 0, 0.8f), r = 2 * 0.8f * n - glm::vec3(0, 0, 1);
+  float last = -2;
+  for (int k = 0; k <= 8; ++k) {
+    p.set(n, float(k) / 8);
+    const float towards = glm::dot(p.reflected() - 2.0f, n);
+    CHECK(towards > last - 1e-3f);
+    last = towards;
+    if (k == 0) CHECK(glm::length(p.reflected() - 2.0f - r) < 0.01f);
+  }
+  CHECK(glm::length(p.reflected() - 2.0f - n) < 0.01f);
+}
+
 TEST_CASE("environment reflection: the roughness chooses the level, and between two it is linear") {
   Pixel p([](int level, const glm::vec3&) { return glm::vec3(float(level * level)); });
   for (int level = 0; level <= 8; ++level) {
