@@ -58,5 +58,6 @@ FigureContent makeSnowFigure(const FigureSettings& settings);
 FigureContent makeExtendedFigure(const FigureSettings& settings);
 FigureContent makeHighlightFigure(const FigureSettings& settings);
 FigureContent makeProjectionsFigure(const FigureSettings& settings);
+FigureContent makeArmourFigure(const FigureSettings& settings);
 
 }  // namespace obscura::apps

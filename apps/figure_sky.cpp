@@ -48,10 +48,10 @@ engine::EnvironmentMap makeSky(int height, int threads) {
   return map;
 }
 
-std::shared_ptr<const engine::Environment> makeSkyLight(const FigureSettings& settings) {
+std::shared_ptr<const engine::Environment> makeSkyLight(const FigureSettings& settings, engine::EnvironmentParts parts) {
   const int threads = settings.raster.threads;
   raster::Parallel parallel(threads);
-  return std::make_shared<const engine::Environment>(engine::environmentOf(makeSky(std::min(512, settings.width), threads), engine::EnvironmentParts::Background, parallel));
+  return std::make_shared<const engine::Environment>(engine::environmentOf(makeSky(std::min(512, settings.width), threads), parts, parallel));
 }
 
 }  // namespace obscura::apps

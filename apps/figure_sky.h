@@ -15,7 +15,8 @@ glm::dvec3 skyRadiance(const glm::dvec3& direction);
 // As a latlong map, height texels high. The same bits for any number of threads.
 engine::EnvironmentMap makeSky(int height, int threads);
 
-// To light with and to look into, as fine as pictures of this size need it.
-std::shared_ptr<const engine::Environment> makeSkyLight(const FigureSettings& settings);
+// To light with, to look into and to be reflected, as fine as pictures of this size need it.
+std::shared_ptr<const engine::Environment> makeSkyLight(const FigureSettings& settings,
+                                                        engine::EnvironmentParts parts = engine::EnvironmentParts::Background);
 
 }  // namespace obscura::apps

@@ -75,6 +75,11 @@ const std::vector<Figure>& allFigures() {
        "The same sky in the four ways in which a texture can hold all directions: longitude and latitude; the picture of a mirror ball, whose rim shows all that is behind it; "
        "six faces of a cube; two paraboloids.",
        makeProjectionsFigure},
+      {"armour", "A bumped, environment-mapped armour",
+       "Akenine-Moller, Haines, Hoffman, Real-Time Rendering, 3rd edition: figure 8.9",
+       "The armour reflects the sky around it. Its normal map bends each reflection, so that it looks like scales of steel, though the surface is smooth. With the sky turned, "
+       "other parts of it shine.",
+       makeArmourFigure},
   };
   return figures;
 }

@@ -115,6 +115,7 @@ Json materialJson(const GlbMaterial& material) {
     json["alphaMode"] = "MASK";
     json["alphaCutoff"] = material.alphaCutoff;
   }
+  if (material.normalMap >= 0) json["normalTexture"] = {{"index", material.normalMap}};
   const double strength = std::max({1.0, material.emissive.x, material.emissive.y, material.emissive.z});
   if (material.emissive != glm::dvec3(0)) json["emissiveFactor"] = array(material.emissive / strength);
   if (strength > 1) json["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", strength}};

@@ -27,6 +27,7 @@ struct GlbMaterial {
   int gloss = -1;           // alike: metallic and roughness are factors on it
   double alphaCutoff = 0;   // above 0: alphaMode MASK
   bool doubleSided = false;
+  int normalMap = -1;       // a texture of linear bytes
   std::string extras;       // JSON, or empty
 };
 
