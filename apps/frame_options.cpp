@@ -422,7 +422,7 @@ engine::Result<ResolvedFrame> FrameOptions::resolve(const engine::Scene& in) con
   out.frame.shadowSize = light.shadowSize;
   if (light.sun) out.frame.lights.push_back(farLight("sun", -*light.sun, light.sunColor, true));
   if (light.headlight > 0)
-    out.frame.lights.push_back(farLight("headlight", -glm::transpose(glm::dmat3(chosen->viewFromWorld))[2], glm::vec3(light.headlight), false));
+    out.frame.lights.push_back(farLight("headlight", -glm::transpose(glm::dmat3(chosen->viewFromWorld))[2], glm::vec3(float(light.headlight)), false));
   if (ambientExtended) {
     raster::Parallel parallel(raster.threads);
     std::vector<engine::SceneLight> lights = light.ofFile ? in.lights : std::vector<engine::SceneLight>();

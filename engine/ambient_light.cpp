@@ -50,8 +50,8 @@ post::AmbientLight ambientLightOf(const Scene& scene, const FrameSettings& setti
   table.clear();
   if (hasAmbientGroups(scene)) {
     for (const Instance& i : scene.instances) {
-      const glm::vec3 color = i.ambient.value_or(settings.ambientLight);
-      for (int c = 0; c < 3; ++c)
+      const glm::vec3 color = i.ambient.value_or(settings.environment ? post::kNoOwnLight : settings.ambientLight);
+      for (int c = 0; c < 3 && i.ambient; ++c)
         if (!(color[c] >= 0 && color[c] < 1e30f))
           throw std::invalid_argument("the ambient light of instance " + std::to_string(table.size()) + " is " +
                                       std::to_string(color[c]) + ": it must be 0 or more and finite");

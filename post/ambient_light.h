@@ -8,6 +8,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "obscura/raster/plane.h"
 #include "obscura/raster/span.h"
 
 namespace obscura::post {
@@ -27,8 +28,11 @@ struct NormalQuadric {
   glm::vec3 most{0};  // of any unit normal, >= 0
 };
 
+constexpr glm::vec3 kNoOwnLight(-1);  // in a table of instances' lights; its first component decides
+
 // La(instance, n) = L(instance, n) D(n), per channel:
-//   L  instances[id] for the ids that it has, else that of the environment if there is one, else color
+//   L  instances[id] for the ids that it has and that are not kNoOwnLight, else that of the environment if there is one, else
+//      color
 //   D  sum_k w_k color_k / sum_k w_k with w_k = max(0, n . f_k); 1 without directions. Where the sum of the weights is not
 //      in (0, 1e8), as of a normal that is zero or no number, the mean of the colours.
 // Whatever the normals hold, D is not above the largest colour but for roundings.
@@ -44,5 +48,10 @@ struct AmbientLight {
   bool needsInstance() const { return !instances.empty(); }
   bool needsNormal() const { return !directions.empty() || environment; }
 };
+
+// Scalar twin of orOfInstance() in instance_light-inl.h: whether the pixel shows an instance with a light of its own.
+inline bool hasOwnLight(raster::Span<const glm::vec3> lights, const raster::Plane<uint32_t>& instance, int x, int y) {
+  return !lights.empty() && instance.at(x, y) < lights.size() && lights[instance.at(x, y)].x >= 0;
+}
 
 }  // namespace obscura::post

@@ -50,7 +50,7 @@ class Asked {
     if (!reflects(x, y)) return !(g_.depth.at(x, y) < std::numeric_limits<float>::infinity());
     if (in_.ambient.empty() || g_.instance.at(x, y) >= in_.ambient.size()) return true;
     const glm::vec3& la = in_.ambient[g_.instance.at(x, y)];
-    return la.x > 0 || la.y > 0 || la.z > 0;
+    return la != glm::vec3(0);
   }
 
   bool reflects(int x, int y) const {

@@ -79,7 +79,7 @@ void environmentReflectionRef(const ReflectionInput& in, int y0, int y1, LinearC
       const float alpha = roughness * roughness, s = 1 - alpha;
       const glm::vec3 along = n + (r - n) * (s * (std::sqrt(s) + alpha));
       glm::vec3 light = trilinear(in.environment.chain, turned(in.environment.mapFromView, along), roughness) * in.environment.intensity;
-      if (!in.instances.empty() && g.instance.at(x, y) < in.instances.size()) light = in.instances[g.instance.at(x, y)];
+      if (hasOwnLight(in.instances, g.instance, x, y)) light = in.instances[g.instance.at(x, y)];
       if (in.obscurance) {
         const float facing = std::fabs(cosine) > kLeastFacing ? std::min(std::fabs(cosine), 1.0f) : kLeastFacing;
         light *= specularOcclusion(in.obscurance->at(x, y), facing, roughness);

@@ -9,6 +9,7 @@
 
 #include "obscura/post/brdf-inl.h"
 #include "obscura/post/cube_look_up-inl.h"
+#include "obscura/post/instance_light-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace obscura::post {
@@ -55,20 +56,6 @@ HWY_INLINE VF specularOcclusion(VF o, VF nv, VF roughness) {
   return hn::IfThenElseZero(hn::Gt(value, zero), hn::IfThenElse(hn::Lt(value, one), value, one));
 }
 
-// The light of what belongs to an instance that has its own; elsewhere what is given.
-HWY_INLINE V3 orOfInstance(const ReflectionInput& in, int x, int y, const V3& otherwise) {
-  const DF d;
-  const DI di;
-  const VI id = hn::BitCast(di, hn::LoadU(hn::RebindToUnsigned<DF>(), in.g->instance.row(y) + x)), zero = hn::Zero(di);
-  const auto known = hn::And(hn::Gt(id, hn::Set(di, -1)), hn::Lt(id, hn::Set(di, int32_t(in.instances.size()))));
-  const VI first = hn::IfThenElse(known, hn::Add(hn::Add(id, id), id), zero);
-  const MF found = hn::RebindMask(d, known);
-  const float* table = &in.instances[0].x;
-  return {hn::IfThenElse(found, hn::GatherIndex(d, table, first), otherwise.x),
-          hn::IfThenElse(found, hn::GatherIndex(d, table + 1, first), otherwise.y),
-          hn::IfThenElse(found, hn::GatherIndex(d, table + 2, first), otherwise.z)};
-}
-
 void EnvironmentReflection(const ReflectionInput& in, int y0, int y1, LinearColor& out) {
   const DF d;
   const raster::GBuffer& g = *in.g;
@@ -87,7 +74,7 @@ void EnvironmentReflection(const ReflectionInput& in, int y0, int y1, LinearColo
       const V3 r{hn::Sub(hn::Mul(twice, n.x), v.x), hn::Sub(hn::Mul(twice, n.y), v.y), hn::Sub(hn::Mul(twice, n.z), v.z)};
       V3 light = chain.at(turned(in.environment.mapFromView, dominant(n, r, roughness)), roughness);
       light = {hn::Mul(light.x, intensity), hn::Mul(light.y, intensity), hn::Mul(light.z, intensity)};
-      if (!in.instances.empty()) light = orOfInstance(in, x, y, light);
+      if (!in.instances.empty()) light = orOfInstance(in.instances, g.instance, x, y, light);
       if (in.obscurance) {
         const VF o = specularOcclusion(hn::LoadU(d, in.obscurance->row(y) + x), facingOf(n, v), roughness);
         light = {hn::Mul(light.x, o), hn::Mul(light.y, o), hn::Mul(light.z, o)};

@@ -8,6 +8,7 @@
 #include <hwy/highway.h>
 
 #include "obscura/post/brdf-inl.h"
+#include "obscura/post/instance_light-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace obscura::post {
@@ -34,7 +35,7 @@ class Ambient {
     V3 la{hn::Set(d, in_.color.x), hn::Set(d, in_.color.y), hn::Set(d, in_.color.z)};
     if (!kVaries) return la;
     if (in_.environment) la = ofEnvironment(x, y);
-    if (!in_.instances.empty()) la = ofInstance(x, y, la);
+    if (!in_.instances.empty()) la = orOfInstance(in_.instances, g_.instance, x, y, la);
     if (!in_.directions.empty()) {
       const V3 by = byNormal(x, y);
       la = {hn::Mul(la.x, by.x), hn::Mul(la.y, by.y), hn::Mul(la.z, by.z)};
@@ -43,19 +44,6 @@ class Ambient {
   }
 
  private:
-  HWY_INLINE V3 ofInstance(int x, int y, const V3& otherwise) const {
-    const DF d;
-    const DI di;
-    const VI id = hn::BitCast(di, hn::LoadU(hn::RebindToUnsigned<DF>(), g_.instance.row(y) + x)), zero = hn::Zero(di);
-    const auto known = hn::And(hn::Gt(id, hn::Set(di, -1)), hn::Lt(id, hn::Set(di, int32_t(in_.instances.size()))));
-    const VI first = hn::IfThenElse(known, hn::Add(hn::Add(id, id), id), zero);
-    const MF found = hn::RebindMask(d, known);
-    const float* table = &in_.instances[0].x;
-    return {hn::IfThenElse(found, hn::GatherIndex(d, table, first), otherwise.x),
-            hn::IfThenElse(found, hn::GatherIndex(d, table + 1, first), otherwise.y),
-            hn::IfThenElse(found, hn::GatherIndex(d, table + 2, first), otherwise.z)};
-  }
-
   // One channel of the quadratic form.
   static HWY_INLINE VF quadric(const NormalQuadric& q, int c, const V3& n) {
     const DF d;

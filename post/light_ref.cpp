@@ -22,7 +22,7 @@ glm::vec3 fromEnvironment(const NormalQuadric& q, float x, float y, float z) {
 glm::vec3 ambientAt(const AmbientLight& in, const raster::GBuffer& g, int x, int y) {
   glm::vec3 la = in.color;
   if (in.environment) la = fromEnvironment(*in.environment, g.normal[0].at(x, y), g.normal[1].at(x, y), g.normal[2].at(x, y));
-  if (!in.instances.empty() && g.instance.at(x, y) < in.instances.size()) la = in.instances[g.instance.at(x, y)];
+  if (hasOwnLight(in.instances, g.instance, x, y)) la = in.instances[g.instance.at(x, y)];
   if (in.directions.empty()) return la;
   glm::vec3 sum(0), all(0);
   float weights = 0;

@@ -27,7 +27,8 @@ engine::FrameSettings settingsOf(const TestScene& scene) {
 
 // A wall across the view of a camera that looks along `view` of the world.
 engine::Frame wallSeenAlong(const glm::dvec3& view, const std::optional<glm::vec3>& group,
-                            std::shared_ptr<const engine::Environment> environment = {}, double rotation = 0, float roughness = 1) {
+                            std::shared_ptr<const engine::Environment> environment = {}, double rotation = 0, float roughness = 1,
+                            std::optional<glm::vec3> behind = {}) {
   TestScene s;
   s.materials.resize(1);
   s.materials[0].doubleSided = true;
@@ -39,6 +40,12 @@ engine::Frame wallSeenAlong(const glm::dvec3& view, const std::optional<glm::vec
   s.place(wall);
   engine::Scene scene = sceneFrom(s);
   scene.instances[0].ambient = group;
+  if (behind) {  // the same wall twice as far away, with a light of its own
+    scene.instances.push_back(scene.instances[0]);
+    scene.instances[1].ambient = behind;
+    scene.instances[1].worldFromObject = glm::dmat4(2.0);
+    scene.instances[1].worldFromObject[3][3] = 1;
+  }
   engine::FrameSettings settings = settingsOf(s);
   settings.camera = raster::perspective(0.7, 1.4, 0.1);
   settings.camera.viewFromWorld = raster::lookAt({0, 0, 0}, view, up);
@@ -95,6 +102,10 @@ TEST_CASE("ambient frames: an environment's directions are the world's, and it t
   CHECK(wallSeenAlong({0, 0, 1}, std::nullopt, lightFrom({1, 0, 0}), 90).color.rgb[0].at(35, 25) > 1.3f);
   CHECK(wallSeenAlong({0, 0, -1}, std::nullopt, lightFrom({1, 0, 0}), 90).color.rgb[0].at(35, 25) < 0.7f);
   CHECK(wallSeenAlong({0, 0, 1}, glm::vec3(2, 4, 8), lightFrom({1, 0, 0})).color.rgb[0].at(35, 25) == 2);  // a group of its own
+  // That another thing has a light of its own takes the environment from none.
+  for (const float roughness : {0.0f, 1.0f})
+    CHECK(wallSeenAlong({0, 0, 1}, std::nullopt, lightFrom({1, 0, 0}), 90, roughness, glm::vec3(2, 4, 8)).color.rgb[0].at(35, 25) ==
+          wallSeenAlong({0, 0, 1}, std::nullopt, lightFrom({1, 0, 0}), 90, roughness).color.rgb[0].at(35, 25));
 }
 
 TEST_CASE("ambient frames: a mirror shows the environment in the direction of reflection, turned as the background, and rough metal a blurred one") {
