@@ -1,71 +1,19 @@
 #include "obscura/apps/frame_options.h"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
-#include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
-
-#include "obscura/apps/cache_folder.h"
+#include "obscura/apps/light_options.h"
+#include "obscura/apps/option_adders.h"
 #include "obscura/apps/option_text.h"
 #include "obscura/apps/setting_names.h"
-#include "obscura/engine/extended_ambient.h"
 #include "obscura/raster/exact_math.h"
-#include "obscura/raster/parallel.h"
 #include "obscura/raster/view.h"
 
 namespace obscura::apps {
 namespace {
 
 constexpr int kMaxThreads = 1024;
-
-// An option whose text `read` turns into a value; false: refused, with what was expected.
-template <class Read>
-CLI::Option* addRead(CLI::App& app, const std::string& name, const std::string& type, const std::string& what,
-                     Read read) {
-  const auto set = [name, type, read](const std::string& text) {
-    if (!read(text)) throw CLI::ValidationError(name, "\"" + text + "\" is not " + type);
-  };
-  return app.add_option_function<std::string>(name, set, what)->type_name(type);
-}
-
-template <class T>
-CLI::Option* addChoice(CLI::App& app, const std::string& name, const Names<T>& names, T& value,
-                       const std::string& what) {
-  std::string list, current;
-  for (const auto& [text, v] : names) {
-    list += (list.empty() ? "" : "|") + text;
-    if (v == value) current = text;
-  }
-  return addRead(app, name, list, what + " [" + current + "]", [names, &value](const std::string& text) {
-    const auto found = std::find_if(names.begin(), names.end(), [&](const auto& n) { return n.first == text; });
-    if (found != names.end()) value = found->second;
-    return found != names.end();
-  });
-}
-
-CLI::Option* addInteger(CLI::App& app, const std::string& name, int least, int most, int& value,
-                        const std::string& what) {
-  const std::string type = std::to_string(least) + "..." + std::to_string(most);
-  return addRead(app, name, type, what, [=, &value](const std::string& text) {
-    const std::optional<int> n = numberOf<int>(text);
-    if (!n || *n < least || *n > most) return false;
-    value = *n;
-    return true;
-  });
-}
-
-CLI::Option* addLength(CLI::App& app, const std::string& name, bool zero, std::optional<double>& value,
-                       const std::string& what, const std::string& otherwise) {
-  const std::string is = value ? shown(*value) : otherwise;
-  return addRead(app, name, "LENGTH", what + ", scene units [" + is + "]", [&value, zero](const std::string& text) {
-    const std::optional<double> v = numberOf<double>(text);
-    if (!v || !(zero ? *v >= 0 : *v > 0)) return false;
-    value = v;
-    return true;
-  });
-}
 
 void addVector(CLI::App& app, const std::string& name, std::optional<glm::dvec3>& value, const std::string& what) {
   addRead(app, name, "X,Y,Z", what, [&value](const std::string& text) {
@@ -80,16 +28,6 @@ void addMatrix(CLI::App& app, const std::string& name, std::optional<glm::dmat4>
     value = m;
     return true;
   })->group("View");
-}
-
-engine::SceneLight farLight(const char* name, const glm::dvec3& direction, const glm::vec3& color, bool shadows) {
-  engine::SceneLight light;
-  light.name = name;
-  const double longest = std::max({std::fabs(direction.x), std::fabs(direction.y), std::fabs(direction.z)});
-  light.direction = glm::normalize(direction / longest);
-  light.color = color;
-  light.shadows = shadows;
-  return light;
 }
 
 raster::Target instructionSet(const std::string& text) {
@@ -124,111 +62,6 @@ void addTarget(CLI::App& app, FrameOptions& o) {
       ->type_name("X,Y,Z|NAME")
       ->allow_extra_args(false)
       ->group("View");
-}
-
-// A colour and a kind, which cannot be confused.
-void addAmbientLight(CLI::App& app, FrameOptions& o) {
-  const auto read = [&o](const std::vector<std::string>& texts) {
-    int colors = 0, kinds = 0;
-    for (const std::string& text : texts) {
-      const std::optional<glm::vec3> color = colorOf(text);
-      if (color) o.ambientLight = color;
-      else if (text == "extended" || text == "constant") o.ambientExtended = text == "extended";
-      else throw CLI::ValidationError("--ambient-light", "\"" + text + "\" is not R,G,B, #RRGGBB, constant or extended");
-      if (++(color ? colors : kinds) > 1)
-        throw CLI::ValidationError("--ambient-light", "\"" + text + "\" is the second of its kind");
-    }
-  };
-  app.add_option_function<std::vector<std::string>>(
-         "--ambient-light", read,
-         "R,G,B|#RRGGBB: the light that comes from everywhere, linear or sRGB [1,1,1; extended: what the scene emits; where "
-         "nothing does, as much that it is 1 on average]. extended: and what the scene's surfaces send each other, by the direction of normals. Both may be given")
-      ->type_name("COLOR|constant|extended")
-      ->allow_extra_args(false)
-      ->group("View");
-}
-
-void addAmbientVariants(CLI::App& app, FrameOptions& o) {
-  const auto addNodes = [&o](const std::vector<std::string>& texts) {
-    for (const std::string& text : texts)
-      if (!addNodeColor(text, o.ambientNodes))
-        throw CLI::ValidationError("--ambient-node", "\"" + text + "\" is not NAME=COLOR");
-  };
-  app.add_option_function<std::vector<std::string>>(
-         "--ambient-node", addNodes,
-         "ambient light of the node of this name and all below it, where rooms differ; repeatable; COLOR as above [as the "
-         "file's nodes say, else --ambient-light]")
-      ->type_name("NAME=COLOR")
-      ->allow_extra_args(false)
-      ->group("View");
-  addRead(app, "--ambient-directional", "PX/NX/PY/NY/PZ/NZ",
-          "factors on the ambient light by the direction of a surface: six colours, of surfaces that face +x, -x, +y, -y, +z "
-          "and -z of the world; others get a mean [none]",
-          [&o](const std::string& text) { return bool(o.ambientDirections = sixColorsOf(text)); })
-      ->group("View");
-}
-
-void addEnvironment(CLI::App& app, FrameOptions& o) {
-  const char* group = "Environment";
-  EnvironmentOptions& e = o.environment;
-  CLI::Option* file = app.add_option("--environment", e.file,
-                                     "light from a map, any image, in place of --ambient-light: .hdr, .exr, .png, ... [none]")
-                          ->type_name("FILE")
-                          ->excludes("--ambient-light")
-                          ->group(group);
-  addChoice(app, "--env-projection", kProjectionNames, e.projection, "of the map: how directions lie in it")->needs(file)->group(group);
-  const auto inRange = [](double least, double most, double& value) {
-    return [=, &value](const std::string& text) {
-      const std::optional<double> v = numberOf<double>(text);
-      if (v && *v >= least && *v <= most) value = *v;
-      return v && *v >= least && *v <= most;
-    };
-  };
-  addRead(app, "--env-rotate", "DEGREES", "turns the map around the vertical (+y), counter-clockwise seen from above [0]",
-          inRange(-engine::kMostRotation, engine::kMostRotation, e.rotation))
-      ->needs(file)
-      ->group(group);
-  app.add_option("--env-cache", e.cache,
-                 "folder to keep what is made of the map in, by the hash of its file [$OBSCURA_CACHE, else $XDG_CACHE_HOME/obscura, "
-                 "else ~/.cache/obscura]; none: it is made again each time")
-      ->type_name("DIR|none")
-      ->needs(file)
-      ->group(group);
-  addRead(app, "--env-intensity", "FACTOR", "on the map's radiance, 0 to 10^6 [1]", inRange(0, engine::kMostIntensity, e.intensity))
-      ->needs(file)
-      ->group(group);
-}
-
-void addLights(CLI::App& app, FrameOptions& o) {
-  const char* group = "Lights";
-  LightOptions& l = o.light;
-  addChoice(app, "--lights", {{"file", true}, {"none", false}}, l.ofFile, "whether the file's lights shine; those below do in any case")->group(group);
-  CLI::Option* sun = addRead(app, "--sun", "X,Y,Z", "a light from far away, with shadows: the direction to it [none]",
-                             [&l](const std::string& text) {
-                               l.sun = vectorOf(text);
-                               const double longest = l.sun ? std::max({std::fabs(l.sun->x), std::fabs(l.sun->y), std::fabs(l.sun->z)}) : 0;
-                               return longest > 1e-100 && longest < 1e100;
-                             });
-  sun->group(group);
-  addRead(app, "--sun-light", "COLOR", "its light in lux, R,G,B linear or #RRGGBB; pi makes white as bright as ambient light of 1 [pi,pi,pi]",
-          [&l](const std::string& text) {
-            const std::optional<glm::vec3> color = colorOf(text);
-            if (color) l.sunColor = *color;
-            return color && std::max({color->x, color->y, color->z}) <= engine::kMostLight;
-          })
-      ->needs(sun)
-      ->group(group);
-  addRead(app, "--headlight", "LUX", "a white light that shines where the camera looks, without shadows, up to 10^15 [0]",
-          [&l](const std::string& text) {
-            const std::optional<double> lux = numberOf<double>(text);
-            if (lux) l.headlight = *lux;
-            return lux && *lux >= 0 && *lux <= double(engine::kMostLight);
-          })
-      ->group(group);
-  addChoice(app, "--shadows", {{"on", true}, {"off", false}}, l.shadows, "what stands in the way of these lights casts shadows")->group(group);
-  addInteger(app, "--shadow-size", 16, engine::kMostShadowSize, l.shadowSize,
-             "texels a side of a shadow map [" + std::to_string(l.shadowSize) + "]")
-      ->group(group);
 }
 
 void addDisplay(CLI::App& app, FrameOptions& o) {
@@ -303,8 +136,6 @@ void addView(CLI::App& app, FrameOptions& o) {
             "how surfaces reflect: by metallic and roughness as glTF says; all alike from everywhere; or by Blinn-Phong's "
             "highlights, smooth or cut off sharply")
       ->group("View");
-  addAmbientLight(app, o);
-  addAmbientVariants(app, o);
 }
 
 void addAmbient(CLI::App& app, FrameOptions& o) {
@@ -374,11 +205,7 @@ void addExecution(CLI::App& app, FrameOptions& o) {
 
 void FrameOptions::addTo(CLI::App& app) {
   app.parse_complete_callback([this] {
-    if (environment.background && environment.file.empty())
-      throw CLI::ValidationError("--background", "environment needs --environment FILE");
-    if (ambientExtended && (ambientDirections || !environment.file.empty()))
-      throw CLI::ValidationError("--ambient-light", std::string("extended and ") + (ambientDirections ? "--ambient-directional" : "--environment") +
-                                                        " cannot be had at once: both say what comes from where");
+    checkLight(*this);
     if (std::max(width, height) <= raster::kMaxImageSize / supersample) return;
     const auto size = [](int w, int h) { return std::to_string(w) + "x" + std::to_string(h); };
     throw CLI::ValidationError("--supersample", size(width, height) + " pixels times " + std::to_string(supersample) +
@@ -388,8 +215,7 @@ void FrameOptions::addTo(CLI::App& app) {
                                                     " a side: choose a smaller --size or --supersample");
   });
   addView(app, *this);
-  addEnvironment(app, *this);
-  addLights(app, *this);
+  addLight(app, *this);
   addDisplay(app, *this);
   addAmbient(app, *this);
   addExecution(app, *this);
@@ -415,40 +241,9 @@ engine::Result<ResolvedFrame> FrameOptions::resolve(const engine::Scene& in) con
   out.frame.camera = *chosen;
   out.frame.brdf = brdf;
   out.frame.ambient = ambient;
-  out.frame.ambientLight = ambientLight.value_or(glm::vec3(1));
-  out.frame.ambientDirections = ambientDirections;
-  out.frame.sceneLights = light.ofFile;
-  out.frame.shadows = light.shadows;
-  out.frame.shadowSize = light.shadowSize;
-  if (light.sun) out.frame.lights.push_back(farLight("sun", -*light.sun, light.sunColor, true));
-  if (light.headlight > 0)
-    out.frame.lights.push_back(farLight("headlight", -glm::transpose(glm::dmat3(chosen->viewFromWorld))[2], glm::vec3(float(light.headlight)), false));
-  if (ambientExtended) {
-    raster::Parallel parallel(raster.threads);
-    std::vector<engine::SceneLight> lights = light.ofFile ? in.lights : std::vector<engine::SceneLight>();
-    lights.insert(lights.end(), out.frame.lights.begin(), out.frame.lights.end());
-    const engine::BouncedLight direct(in, lights, light.shadows, raster);
-    const auto colors = engine::extendedAmbient(in, ambientLight ? std::optional<glm::dvec3>(*ambientLight) : std::nullopt, parallel, &direct);
-    if (!colors) return colors.error();
-    out.frame.ambientLight = glm::vec3(1);
-    out.frame.ambientDirections = *colors;
-  }
   out.frame.background = background;
   out.frame.tone = tone;
-  if (!environment.file.empty()) {
-    engine::Result<engine::Environment> read =
-        engine::readEnvironment(environment.file, environment.projection,
-                                isGlossy(brdf)           ? engine::EnvironmentParts::Reflections
-                                : environment.background ? engine::EnvironmentParts::Background
-                                                         : engine::EnvironmentParts::Light,
-                                raster.threads,
-                                environment.cache ? (*environment.cache == "none" ? "" : *environment.cache) : defaultCacheFolder());
-    if (!read) return read.error();
-    out.frame.environment = std::make_shared<const engine::Environment>(std::move(*read));
-    out.frame.environmentRotation = environment.rotation;
-    out.frame.environmentIntensity = environment.intensity;
-    out.frame.environmentBackground = environment.background;
-  }
+  if (const auto done = resolveLight(*this, in, out.frame); !done) return done.error();
   out.frame.transfer = transfer;
   out.frame.transfer.radius = float(r);
   out.frame.transfer.bias = float(bias.value_or(engine::kDefaultBias * r));

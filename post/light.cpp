@@ -36,11 +36,14 @@ class Ambient {
     if (!kVaries) return la;
     if (in_.environment) la = ofEnvironment(x, y);
     if (!in_.instances.empty()) la = orOfInstance(in_.instances, g_.instance, x, y, la);
-    if (!in_.directions.empty()) {
-      const V3 by = byNormal(x, y);
-      la = {hn::Mul(la.x, by.x), hn::Mul(la.y, by.y), hn::Mul(la.z, by.z)};
-    }
-    return la;
+    return byDirection(la, x, y);
+  }
+
+  // Times D(n).
+  HWY_INLINE V3 byDirection(const V3& light, int x, int y) const {
+    if (!kVaries || in_.directions.empty()) return light;
+    const V3 by = byNormal(x, y);
+    return {hn::Mul(light.x, by.x), hn::Mul(light.y, by.y), hn::Mul(light.z, by.z)};
   }
 
  private:
@@ -120,10 +123,15 @@ void lightRows(const LightInput& in, int y0, int y1, LinearColor& out) {
   for (int y = y0; y < y1; ++y)
     for (int x = 0; x < g.width; x += int(hn::Lanes(d))) {
       const MF seen = seenAt(g, x, y);
+      if (hn::AllFalse(d, seen)) {
+        for (int c = 0; c < 3; ++c) hn::StoreU(hn::Set(d, in.background[c]), d, out.rgb[c].row(y) + x);
+        continue;
+      }
       const V3 la = ambient.at(x, y);
       const Reflectances r = reflectances<kBrdf>(g, directions, mirrors, x, y);
       const VF channels[3] = {la.x, la.y, la.z}, colors[3] = {r.ambient.x, r.ambient.y, r.ambient.z};
-      const VF mirrored[3] = {r.mirrored.x, r.mirrored.y, r.mirrored.z};
+      const V3 shown = mirrors ? ambient.byDirection(r.mirrored, x, y) : r.mirrored;
+      const VF mirrored[3] = {shown.x, shown.y, shown.z};
       for (int c = 0; c < 3; ++c) {
         VF color = colors[c];
         if (bounced) {

@@ -19,11 +19,9 @@ glm::vec3 fromEnvironment(const NormalQuadric& q, float x, float y, float z) {
   return la;
 }
 
-glm::vec3 ambientAt(const AmbientLight& in, const raster::GBuffer& g, int x, int y) {
-  glm::vec3 la = in.color;
-  if (in.environment) la = fromEnvironment(*in.environment, g.normal[0].at(x, y), g.normal[1].at(x, y), g.normal[2].at(x, y));
-  if (hasOwnLight(in.instances, g.instance, x, y)) la = in.instances[g.instance.at(x, y)];
-  if (in.directions.empty()) return la;
+// D(n).
+glm::vec3 factorAt(const AmbientLight& in, const raster::GBuffer& g, int x, int y) {
+  if (in.directions.empty()) return glm::vec3(1);
   glm::vec3 sum(0), all(0);
   float weights = 0;
   for (const AmbientDirection& k : in.directions) {
@@ -34,7 +32,14 @@ glm::vec3 ambientAt(const AmbientLight& in, const raster::GBuffer& g, int x, int
     weights += cosine;
     sum += cosine * k.color;
   }
-  return la * (weights > 0 && weights < 1e8f ? sum / weights : all / float(in.directions.size()));
+  return weights > 0 && weights < 1e8f ? sum / weights : all / float(in.directions.size());
+}
+
+glm::vec3 ambientAt(const AmbientLight& in, const raster::GBuffer& g, int x, int y) {
+  glm::vec3 la = in.color;
+  if (in.environment) la = fromEnvironment(*in.environment, g.normal[0].at(x, y), g.normal[1].at(x, y), g.normal[2].at(x, y));
+  if (hasOwnLight(in.instances, g.instance, x, y)) la = in.instances[g.instance.at(x, y)];
+  return la * factorAt(in, g, x, y);
 }
 
 bool isSeen(const raster::GBuffer& g, int x, int y) { return g.depth.at(x, y) < std::numeric_limits<float>::infinity(); }
@@ -64,6 +69,7 @@ void lightRef(const LightInput& in, int y0, int y1, LinearColor& out) {
       const glm::vec3 la = ambientAt(in.ambient, g, x, y);
       const ref::Reflectance r = reflectanceAt(in, x, y);
       const bool mirrors = isGlossy(in.brdf) && in.reflected;
+      const glm::vec3 factor = factorAt(in.ambient, g, x, y);
       for (int c = 0; c < 3; ++c) {
         const float a = mirrors || !isGlossy(in.brdf) ? r.diffuse[c] : r.diffuse[c] + r.specular[c];
         float reflected = a * la[c];
@@ -72,7 +78,7 @@ void lightRef(const LightInput& in, int y0, int y1, LinearColor& out) {
           reflected = in.transfer->bounced[c].empty()
                           ? a * in.transfer->w[c].at(x, y) * la[c]
                           : a * (in.transfer->obscurance.at(x, y) * la[c] + in.transfer->bounced[c].at(x, y));
-        if (mirrors) reflected += r.specular[c] * in.reflected->rgb[c].at(x, y);
+        if (mirrors) reflected += r.specular[c] * factor[c] * in.reflected->rgb[c].at(x, y);
         if (in.direct) reflected += in.direct->rgb[c].at(x, y);
         const float emitted = g.emissive[c].empty() ? 0 : g.emissive[c].at(x, y);
         out.rgb[c].at(x, y) = isSeen(g, x, y) ? reflected + emitted : in.background[c];

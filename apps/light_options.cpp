@@ -1,0 +1,188 @@
+#include "obscura/apps/light_options.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "obscura/apps/cache_folder.h"
+#include "obscura/apps/option_adders.h"
+#include "obscura/apps/option_text.h"
+#include "obscura/apps/setting_names.h"
+#include "obscura/engine/extended_ambient.h"
+#include "obscura/raster/parallel.h"
+
+namespace obscura::apps {
+namespace {
+
+engine::SceneLight farLight(const char* name, const glm::dvec3& direction, const glm::vec3& color, bool shadows) {
+  engine::SceneLight light;
+  light.name = name;
+  const double longest = std::max({std::fabs(direction.x), std::fabs(direction.y), std::fabs(direction.z)});
+  light.direction = glm::normalize(direction / longest);
+  light.color = color;
+  light.shadows = shadows;
+  return light;
+}
+
+// A colour and a kind, which cannot be confused.
+void addAmbientLight(CLI::App& app, FrameOptions& o) {
+  const auto read = [&o](const std::vector<std::string>& texts) {
+    int colors = 0, kinds = 0;
+    for (const std::string& text : texts) {
+      const std::optional<glm::vec3> color = colorOf(text);
+      if (color) o.ambientLight = color;
+      else if (text == "extended" || text == "constant") o.ambientExtended = text == "extended";
+      else throw CLI::ValidationError("--ambient-light", "\"" + text + "\" is not R,G,B, #RRGGBB, constant or extended");
+      if (++(color ? colors : kinds) > 1)
+        throw CLI::ValidationError("--ambient-light", "\"" + text + "\" is the second of its kind");
+    }
+  };
+  app.add_option_function<std::vector<std::string>>(
+         "--ambient-light", read,
+         "R,G,B|#RRGGBB: the light that comes from everywhere, linear or sRGB [1,1,1; extended: what the scene emits; where "
+         "nothing does, as much that it is 1 on average]. extended: and what the scene's surfaces send each other, by the direction of normals. Both may be given")
+      ->type_name("COLOR|constant|extended")
+      ->allow_extra_args(false)
+      ->group("View");
+}
+
+void addAmbientVariants(CLI::App& app, FrameOptions& o) {
+  const auto addNodes = [&o](const std::vector<std::string>& texts) {
+    for (const std::string& text : texts)
+      if (!addNodeColor(text, o.ambientNodes))
+        throw CLI::ValidationError("--ambient-node", "\"" + text + "\" is not NAME=COLOR");
+  };
+  app.add_option_function<std::vector<std::string>>(
+         "--ambient-node", addNodes,
+         "ambient light of the node of this name and all below it, where rooms differ; repeatable; COLOR as above [as the "
+         "file's nodes say, else --ambient-light]")
+      ->type_name("NAME=COLOR")
+      ->allow_extra_args(false)
+      ->group("View");
+  addRead(app, "--ambient-directional", "PX/NX/PY/NY/PZ/NZ",
+          "factors on the ambient light by the direction of a surface: six colours, of surfaces that face +x, -x, +y, -y, +z "
+          "and -z of the world; others get a mean [none]",
+          [&o](const std::string& text) { return bool(o.ambientDirections = sixColorsOf(text)); })
+      ->group("View");
+}
+
+void addEnvironment(CLI::App& app, FrameOptions& o) {
+  const char* group = "Environment";
+  EnvironmentOptions& e = o.environment;
+  CLI::Option* file = app.add_option("--environment", e.file,
+                                     "light from a map, any image, in place of --ambient-light: .hdr, .exr, .png, ... [none]")
+                          ->type_name("FILE")
+                          ->excludes("--ambient-light")
+                          ->group(group);
+  addChoice(app, "--env-projection", kProjectionNames, e.projection, "of the map: how directions lie in it")->needs(file)->group(group);
+  const auto inRange = [](double least, double most, double& value) {
+    return [=, &value](const std::string& text) {
+      const std::optional<double> v = numberOf<double>(text);
+      if (v && *v >= least && *v <= most) value = *v;
+      return v && *v >= least && *v <= most;
+    };
+  };
+  addRead(app, "--env-rotate", "DEGREES", "turns the map around the vertical (+y), counter-clockwise seen from above [0]",
+          inRange(-engine::kMostRotation, engine::kMostRotation, e.rotation))
+      ->needs(file)
+      ->group(group);
+  app.add_option("--env-cache", e.cache,
+                 "folder to keep what is made of the map in, by the hash of its file [$OBSCURA_CACHE, else $XDG_CACHE_HOME/obscura, "
+                 "else ~/.cache/obscura]; none: it is made again each time")
+      ->type_name("DIR|none")
+      ->needs(file)
+      ->group(group);
+  addRead(app, "--env-intensity", "FACTOR", "on the map's radiance, 0 to 10^6 [1]", inRange(0, engine::kMostIntensity, e.intensity))
+      ->needs(file)
+      ->group(group);
+}
+
+void addLights(CLI::App& app, FrameOptions& o) {
+  const char* group = "Lights";
+  LightOptions& l = o.light;
+  addChoice(app, "--lights", {{"file", true}, {"none", false}}, l.ofFile, "whether the file's lights shine; those below do in any case")->group(group);
+  CLI::Option* sun = addRead(app, "--sun", "X,Y,Z", "a light from far away, with shadows: the direction to it [none]",
+                             [&l](const std::string& text) {
+                               l.sun = vectorOf(text);
+                               const double longest = l.sun ? std::max({std::fabs(l.sun->x), std::fabs(l.sun->y), std::fabs(l.sun->z)}) : 0;
+                               return longest > 1e-100 && longest < 1e100;
+                             });
+  sun->group(group);
+  addRead(app, "--sun-light", "COLOR", "its light in lux, R,G,B linear or #RRGGBB; pi makes white as bright as ambient light of 1 [pi,pi,pi]",
+          [&l](const std::string& text) {
+            const std::optional<glm::vec3> color = colorOf(text);
+            if (color) l.sunColor = *color;
+            return color && std::max({color->x, color->y, color->z}) <= engine::kMostLight;
+          })
+      ->needs(sun)
+      ->group(group);
+  addRead(app, "--headlight", "LUX", "a white light that shines where the camera looks, without shadows, up to 10^15 [0]",
+          [&l](const std::string& text) {
+            const std::optional<double> lux = numberOf<double>(text);
+            if (lux) l.headlight = *lux;
+            return lux && *lux >= 0 && *lux <= double(engine::kMostLight);
+          })
+      ->group(group);
+  addChoice(app, "--shadows", {{"on", true}, {"off", false}}, l.shadows, "what stands in the way of these lights casts shadows")->group(group);
+  addInteger(app, "--shadow-size", 16, engine::kMostShadowSize, l.shadowSize,
+             "texels a side of a shadow map [" + std::to_string(l.shadowSize) + "]")
+      ->group(group);
+}
+
+}  // namespace
+
+void addLight(CLI::App& app, FrameOptions& o) {
+  addAmbientLight(app, o);
+  addAmbientVariants(app, o);
+  addEnvironment(app, o);
+  addLights(app, o);
+}
+
+void checkLight(const FrameOptions& o) {
+  if (o.environment.background && o.environment.file.empty())
+    throw CLI::ValidationError("--background", "environment needs --environment FILE");
+  if (o.ambientExtended && (o.ambientDirections || !o.environment.file.empty()))
+    throw CLI::ValidationError("--ambient-light", std::string("extended and ") + (o.ambientDirections ? "--ambient-directional" : "--environment") +
+                                                      " cannot be had at once: both say what comes from where");
+}
+
+engine::Result<engine::Done> resolveLight(const FrameOptions& o, const engine::Scene& scene, engine::FrameSettings& frame) {
+  frame.ambientLight = o.ambientLight.value_or(glm::vec3(1));
+  frame.ambientDirections = o.ambientDirections;
+  frame.sceneLights = o.light.ofFile;
+  frame.shadows = o.light.shadows;
+  frame.shadowSize = o.light.shadowSize;
+  if (o.light.sun) frame.lights.push_back(farLight("sun", -*o.light.sun, o.light.sunColor, true));
+  if (o.light.headlight > 0)
+    frame.lights.push_back(farLight("headlight", -glm::transpose(glm::dmat3(frame.camera.viewFromWorld))[2], glm::vec3(float(o.light.headlight)), false));
+  if (o.ambientExtended) {
+    raster::Parallel parallel(o.raster.threads);
+    std::vector<engine::SceneLight> lights = o.light.ofFile ? scene.lights : std::vector<engine::SceneLight>();
+    lights.insert(lights.end(), frame.lights.begin(), frame.lights.end());
+    const engine::BouncedLight direct(scene, lights, o.light.shadows, o.raster);
+    const auto colors = engine::extendedAmbient(scene, o.ambientLight ? std::optional<glm::dvec3>(*o.ambientLight) : std::nullopt, parallel, &direct);
+    if (!colors) return colors.error();
+    frame.ambientLight = glm::vec3(1);
+    frame.ambientDirections = *colors;
+  }
+  if (!o.environment.file.empty()) {
+    engine::Result<engine::Environment> read =
+        engine::readEnvironment(o.environment.file, o.environment.projection,
+                                isGlossy(o.brdf)           ? engine::EnvironmentParts::Reflections
+                                : o.environment.background ? engine::EnvironmentParts::Background
+                                                         : engine::EnvironmentParts::Light,
+                                o.raster.threads,
+                                o.environment.cache ? (*o.environment.cache == "none" ? "" : *o.environment.cache) : defaultCacheFolder());
+    if (!read) return read.error();
+    frame.environment = std::make_shared<const engine::Environment>(std::move(*read));
+    frame.environmentRotation = o.environment.rotation;
+    frame.environmentIntensity = o.environment.intensity;
+    frame.environmentBackground = o.environment.background;
+  }
+  return engine::Done{};
+}
+
+}  // namespace obscura::apps
