@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "obscura/post/ambient_light.h"
 #include "obscura/post/brdf_ref.h"
 #include "obscura/post/environment_background.h"
 #include "obscura/post/environment_reflection.h"
