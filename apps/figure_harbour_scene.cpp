@@ -96,7 +96,9 @@ class Harbour {
     for (int i = 0; i < 9; ++i) {
       const double half = random.in(1.7, 2.3);
       const int storeys = 2 + random.below(2);
-      addHouse({x + half, kQuay, -6.5 + random.in(-0.4, 0.4)}, {half, 0.5 + 0.95 * storeys, 2.2}, paint("wall", walls[i % 7]), roofs[random.below(2)], storeys);
+      const int roof = roofs[random.below(2)];
+      const double z = -6.5 + random.in(-0.4, 0.4);
+      addHouse({x + half, kQuay, z}, {half, 0.5 + 0.95 * storeys, 2.2}, paint("wall", walls[i % 7]), roof, storeys);
       x += 2 * half + 0.12;
     }
   }
@@ -179,12 +181,23 @@ class Harbour {
                             paint("barrel", woods[k]));
     Random random(47);
     const double y = kQuay;
+    // Each number is drawn in a statement of its own: compilers differ in the order in which they evaluate arguments.
     const auto put = [&](int mesh, dvec3 at, double yaw, double size) { named("goods", b.place(mesh, at, yaw, dvec3(size))); };
     for (const double pile : {-7.8, -1.2, 3.6, 9.2}) {
-      for (int i = 0; i < 3; ++i) put(crate[random.below(3)], {pile + 1.06 * i, y + 0.5, -2.4 + random.in(-0.08, 0.08)}, random.in(-0.1, 0.1), 1);
-      for (int i = 0; i < 2; ++i) put(crate[random.below(3)], {pile + 0.5 + 1.1 * i, y + 1.5, -2.4}, random.in(-0.2, 0.2), 1);
-      put(crate[random.below(3)], {pile + 0.3, y + 0.4, -1.35}, random.in(0, 0.7), 0.8);
-      for (int i = 0; i < 4; ++i) put(barrel[random.below(2)], {pile + 2.0 + 0.74 * (i % 2) + random.in(-0.05, 0.05), y, -1.3 - 0.72 * (i / 2)}, 0, 1);
+      for (int i = 0; i < 3; ++i) {
+        const double yaw = random.in(-0.1, 0.1), z = -2.4 + random.in(-0.08, 0.08);
+        put(crate[random.below(3)], {pile + 1.06 * i, y + 0.5, z}, yaw, 1);
+      }
+      for (int i = 0; i < 2; ++i) {
+        const double yaw = random.in(-0.2, 0.2);
+        put(crate[random.below(3)], {pile + 0.5 + 1.1 * i, y + 1.5, -2.4}, yaw, 1);
+      }
+      const double yaw = random.in(0, 0.7);
+      put(crate[random.below(3)], {pile + 0.3, y + 0.4, -1.35}, yaw, 0.8);
+      for (int i = 0; i < 4; ++i) {
+        const double x = pile + 2.0 + 0.74 * (i % 2) + random.in(-0.05, 0.05);
+        put(barrel[random.below(2)], {x, y, -1.3 - 0.72 * (i / 2)}, 0, 1);
+      }
       put(barrel[random.below(2)], {pile + 2.4, y + 0.92, -1.66}, 0, 0.95);
     }
   }
