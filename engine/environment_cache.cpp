@@ -37,7 +37,7 @@ class Reader {
   explicit Reader(const std::vector<uint8_t>& from) : from_(from) {}
   bool take(void* values, size_t bytes) {
     if (bytes > left()) return false;
-    std::memcpy(values, from_.data() + at_, bytes);
+    if (bytes > 0) std::memcpy(values, from_.data() + at_, bytes);  // an environment without cubes has no place for texels
     at_ += bytes;
     return true;
   }
