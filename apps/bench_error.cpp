@@ -9,7 +9,6 @@
 #include "obscura/apps/gnuplot.h"
 #include "obscura/apps/setting_names.h"
 #include "obscura/apps/signals.h"
-#include "obscura/engine/gltf.h"
 
 namespace obscura::apps {
 
@@ -28,38 +27,27 @@ void ErrorBenchmark::addTo(CLI::App& app, int& status) {
   removeEstimatorOptions(*command, options,
                          {"--radius", "--membership", "--bias", "--silhouette-bound", "--filter-threshold", "--samples", "--steps",
                           "--estimator", "--layers", "--interleave", "--filter", "--filter-guide"});
+  command->remove_option(command->get_option("--crop"));  // the way goes through a whole image
   truth.addTo(*command);
   command->callback([this, &status] { status = guarded([this] { return run(); }); });
 }
 
 int ErrorBenchmark::run() {
   endCleanlyOnSignals();
-  Progress progress(6, quiet);
-  progress.step("loading");
-  engine::LoadOptions load;
-  load.scene = options.scene;
-  const auto loaded = engine::sceneFromGltf(scene, load);
-  if (!loaded) return fail(loaded.error());
-  auto resolved = options.resolve(*loaded);
-  if (!resolved) return fail(resolved.error());
-  progress.step("rendering");
-  engine::Renderer renderer(resolved->raster);
-  engine::Frame frame, estimated;
-  resolved->frame.aovs = {engine::Aov::Obscurance};
-  if (const auto done = renderer.render(*loaded, resolved->frame, estimated); !done) return fail(done.error());
-  resolved->frame.aovs = truthAovs();
-  if (const auto done = renderer.render(*loaded, resolved->frame, frame); !done) return fail(done.error());
-  if (resolved->frame.crop) return fail({engine::ErrorCode::Usage, "--crop: the way from the truth to the estimator is that of a whole image", "", ""});
-  const auto found = truthOfFrame(*loaded, *resolved, frame, truth, progress);
+  Progress progress(5, quiet);
+  auto traced = renderTraced(scene, options, {engine::Aov::Obscurance}, progress);
+  if (!traced) return fail(traced.error());
+  auto& [loaded, resolved, frame] = *traced;
+  const auto found = truthOfFrame(loaded, resolved, frame, truth, progress);
   if (!found) return fail(found.error());
   progress.step("taking it apart");
-  const auto steps = errorSteps(*loaded, *resolved, frame, found->truth.value[size_t(resolved->frame.transfer.membership)],
-                                std::move(estimated.transfer.obscurance), directions, [&](double part) { progress.at(part); });
+  const auto steps = errorSteps(loaded, resolved, frame, found->truth.value[size_t(resolved.frame.transfer.membership)],
+                                std::move(frame.transfer.obscurance), directions, [&](double part) { progress.at(part); });
   progress.finish();
   if (!plot.empty())
     if (const auto done = writeGnuplot(plot, [&](const std::string& terminal) { return plotScript(terminal, steps); }); !done)
       return fail(done.error());
-  print(*resolved, frame, steps);
+  print(resolved, frame, steps);
   return 0;
 }
 

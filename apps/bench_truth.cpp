@@ -9,7 +9,6 @@
 #include "obscura/apps/setting_names.h"
 #include "obscura/apps/signals.h"
 #include "obscura/apps/truth_planes.h"
-#include "obscura/engine/gltf.h"
 
 namespace obscura::apps {
 namespace {
@@ -49,25 +48,15 @@ int TruthBenchmark::run() {
   const auto files = planTruthFiles(outputs, planes);
   if (!files) return fail(files.error());
   Progress progress(4, quiet);
-  progress.step("loading");
-  engine::LoadOptions load;
-  load.scene = options.scene;
-  const auto loaded = engine::sceneFromGltf(scene, load);
-  if (!loaded) return fail(loaded.error());
-  auto resolved = options.resolve(*loaded);
-  if (!resolved) return fail(resolved.error());
-  progress.step("rendering");
-  resolved->frame.aovs = truthAovs();
-  engine::Frame frame;
-  if (const auto done = engine::Renderer(resolved->raster).render(*loaded, resolved->frame, frame); !done) return fail(done.error());
-  if (seenPixels(frame) == 0) return fail({engine::ErrorCode::BadInput, "nothing is visible from this camera", scene, ""});
-
-  const auto found = truthOfFrame(*loaded, *resolved, frame, truth, progress);
+  const auto traced = renderTraced(scene, options, {}, progress);
+  if (!traced) return fail(traced.error());
+  const auto& [loaded, resolved, frame] = *traced;
+  const auto found = truthOfFrame(loaded, resolved, frame, truth, progress);
   if (!found) return fail(found.error());
   for (const TruthFile& file : *files)
     if (const auto done = writeTruthFile(file, found->truth, frame); !done) return fail(done.error());
   progress.finish();
-  print(*resolved, frame, *found);
+  print(resolved, frame, *found);
   return 0;
 }
 

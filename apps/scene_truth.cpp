@@ -6,6 +6,7 @@
 
 #include "obscura/apps/cache_folder.h"
 #include "obscura/apps/truth_cache.h"
+#include "obscura/engine/gltf.h"
 #include "obscura/raster/stopwatch.h"
 
 namespace obscura::apps {
@@ -35,8 +36,29 @@ void removeEstimatorOptions(CLI::App& app, FrameOptions& options, const std::vec
   };
   for (const CLI::Option* o : app.get_options(concerned))
     if (std::find(kept.begin(), kept.end(), o->get_name()) == kept.end()) app.remove_option(app.get_option(o->get_name()));
-  for (const char* name : {"--supersample", "--border", "--background", "--ambient-light", "--separation", "--displacement", "--reference"})
+  for (const char* name : {"--supersample", "--border", "--background", "--ambient-light", "--separation", "--displacement", "--brdf", "--reference"})
     app.remove_option(app.get_option(name));
+}
+
+engine::Result<TracedFrame> renderTraced(const std::string& file, const FrameOptions& options, const std::vector<engine::Aov>& more,
+                                         Progress& progress) {
+  progress.step("loading");
+  engine::LoadOptions load;
+  load.scene = options.scene;
+  auto scene = engine::sceneFromGltf(file, load);
+  if (!scene) return scene.error();
+  auto resolved = options.resolve(*scene);
+  if (!resolved) return resolved.error();
+  TracedFrame out{std::move(*scene), std::move(*resolved), {}};
+
+  progress.step("rendering");
+  out.resolved.frame.aovs = truthAovs();
+  out.resolved.frame.aovs.insert(out.resolved.frame.aovs.end(), more.begin(), more.end());
+  if (const auto done = engine::Renderer(out.resolved.raster).render(out.scene, out.resolved.frame, out.frame); !done) return done.error();
+  const raster::Plane<uint32_t>& instance = out.frame.g.instance;
+  for (int y = 0; y < out.frame.height; ++y)
+    if (std::any_of(instance.row(y), instance.row(y) + out.frame.width, [](uint32_t id) { return id != raster::kNoTriangle; })) return out;
+  return engine::Error{engine::ErrorCode::BadInput, "nothing is visible from this camera", file, ""};
 }
 
 engine::Result<SceneTruth> truthOfFrame(const engine::Scene& scene, const ResolvedFrame& resolved, const engine::Frame& frame,

@@ -26,6 +26,17 @@ struct TruthOptions {
 // is done with it: a truth depends on none of them. Rays meet the triangles of a mesh, so nothing is displaced.
 void removeEstimatorOptions(CLI::App& app, FrameOptions& options, const std::vector<std::string>& kept = {"--radius", "--membership"});
 
+// A frame that truths are traced of.
+struct TracedFrame {
+  engine::Scene scene;
+  ResolvedFrame resolved;
+  engine::Frame frame;  // with truthAovs() and those asked for
+};
+
+// Loads and renders. Usage, BadInput: also where nothing is visible.
+engine::Result<TracedFrame> renderTraced(const std::string& file, const FrameOptions& options, const std::vector<engine::Aov>& more,
+                                         Progress& progress);
+
 struct SceneTruth {
   Truth truth;
   std::string key, file;  // file: empty without a cache

@@ -61,8 +61,8 @@ struct Renderer::State {
 
   static constexpr size_t kRowsPerTask = 8;
 
-  void drawGBuffer(const Scene& scene, const FrameSettings& s, const FrameNeeds& needs, Frame& out);
-  void drawDirect(const Scene& scene, const FrameSettings& s, const FrameNeeds& needs, Frame& out);
+  void drawGBuffer(const raster::DrawList& list, const FrameSettings& s, const FrameNeeds& needs, Frame& out);
+  void drawDirect(const Scene& scene, const raster::DrawList& list, const FrameSettings& s, const FrameNeeds& needs, Frame& out);
   void drawTransfer(const FrameSettings& s, const FrameNeeds& needs, Frame& out);
   void drawLight(const FrameSettings& s, const FrameNeeds& needs, Frame& out);
   void drawBackground(const FrameSettings& s, Frame& out);
@@ -101,8 +101,7 @@ raster::Window Renderer::State::windowToDraw(const raster::DrawList& list, const
   return transferWindow(s, nearestDepth(g.depth));
 }
 
-void Renderer::State::drawGBuffer(const Scene& scene, const FrameSettings& s, const FrameNeeds& needs, Frame& out) {
-  const raster::DrawList list = draws.of(scene, s.displacement);
+void Renderer::State::drawGBuffer(const raster::DrawList& list, const FrameSettings& s, const FrameNeeds& needs, Frame& out) {
   const raster::Window output = outputWindow(s);
   window = windowToDraw(list, s, needs);
   part = {output.x - window.x, output.y - window.y, output.width, output.height};
@@ -156,11 +155,10 @@ post::TransferStatistics Renderer::State::transferSums(post::TransferInput& in, 
 }
 
 // What is reflected of direct lights: of all that is drawn where the transfer reads it.
-void Renderer::State::drawDirect(const Scene& scene, const FrameSettings& s, const FrameNeeds& needs, Frame& out) {
+void Renderer::State::drawDirect(const Scene& scene, const raster::DrawList& list, const FrameSettings& s, const FrameNeeds& needs, Frame& out) {
   const raster::GBuffer& g = more() ? drawn : out.g;
   post::LinearColor& to = more() ? drawnDirect : direct;
   to = post::makeLinearColor(g.width, g.height, std::move(to));
-  const raster::DrawList list = draws.of(scene, s.displacement);
   const raster::Window all = wholeWindow(s);
   const bool missing = hasShadows(scene, s) && (window.width < all.width || window.height < all.height);
   if (missing) {
@@ -289,9 +287,10 @@ Result<Done> Renderer::render(const Scene& scene, const FrameSettings& settings,
   drawn.timings = {};
   drawn.transferStatistics = {};
   drawn.lightStatistics = {};
-  s.drawGBuffer(scene, full, needs, drawn);
+  const raster::DrawList list = s.draws.of(scene, full.displacement);
+  s.drawGBuffer(list, full, needs, drawn);
   timings.gbuffer = watch.lap();
-  if (needs.direct) s.drawDirect(scene, full, needs, drawn);
+  if (needs.direct) s.drawDirect(scene, list, full, needs, drawn);
   timings.shadows = drawn.timings.shadows;
   timings.direct = drawn.timings.direct;
   s.drawTransfer(full, needs, drawn);

@@ -91,6 +91,8 @@ TEST_CASE("error steps: the same for any number of threads; nonsense ends with e
     CHECK(wrong.code == 2);
     CHECK(wrong.out.empty());
   }
+  const Finished away = runProgram(errorWords(s, {}, {"--eye", "0,0,9999", "--target", "0,0,99999"}));
+  CHECK((away.code == 3 && away.out.empty()));
   const Finished drawn = runProgram(errorWords(s, {"--plot", s / "bars.gp"}));
   CHECK(drawn.code == 0);
   CHECK(contentOf(s / "bars.gp").find("\"thickness\" ") != std::string::npos);
