@@ -36,7 +36,7 @@ std::vector<glm::vec3> ofPixels(const std::vector<glm::vec3>& all, int n, std::i
 
 }  // namespace
 
-TEST_CASE("dealt samples: there are 16 n for every n from 1 to 64, all different, in [0, 1)") {
+TEST_CASE("dealt samples: there are 16 n for every n from 1 to 64, all different, from 0 to below 1") {
   for (int n = 1; n <= kMaxSamples; ++n) {
     const std::vector<glm::vec3> points = dealtSamples(n, 5);
     REQUIRE(points.size() == size_t(16 * n));

@@ -36,7 +36,7 @@ std::map<std::string, Json> stepsOf(const SceneFolder& s, const std::vector<std:
 
 }  // namespace
 
-TEST_CASE("error steps: a wall that stands alone has none; the depth map's stairs add less than a hundredth") {
+TEST_CASE("error steps: a wall that stands alone has none, the depth map's stairs add less than a hundredth") {
   const SceneFolder s;
   GltfBuilder b;
   b.add("materials", Json::object());
@@ -80,7 +80,7 @@ TEST_CASE("error steps: each answers to its own setting: no filter, more samples
   CHECK(few.at("thickness")["change"] > 0);
 }
 
-TEST_CASE("error steps: the same for any number of threads; nonsense ends with exit code 2") {
+TEST_CASE("error steps: the same for any number of threads, nonsense ends with exit code 2") {
   const SceneFolder s;
   const Finished one = runProgram(errorWords(s, {"--threads", "1"})), three = runProgram(errorWords(s, {"--threads", "3"}));
   CHECK((one.code == 0 && one.out == three.out));

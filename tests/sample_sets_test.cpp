@@ -89,7 +89,7 @@ TEST_CASE("sample sets: there is one of every size from 1 to 64, and none of ano
   for (int n : {-1, 0, kMaxSamples + 1, 1 << 30}) CHECK(sampleSet(n).empty());
 }
 
-TEST_CASE("sample sets: values lie in [0, 1), the projections on xi_y and xi_z are evenly spread with mean 1/2") {
+TEST_CASE("sample sets: values lie from 0 to below 1, the projections on xi_y and xi_z are evenly spread with mean 1/2") {
   for (int n = 1; n <= kMaxSamples; ++n) {
     INFO("set of " << n);
     std::set<float> ys, zs;
