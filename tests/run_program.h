@@ -6,19 +6,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
 #include "temporary_folder.h"
 
 extern char** environ;
-
-inline std::string contentOf(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return std::string((std::istreambuf_iterator<char>(in)), {});
-}
 
 // Starts OBSCURA_PROGRAM with its streams on these files; returns its process id, or -1.
 inline pid_t startProgram(const std::vector<std::string>& arguments, const std::string& out, const std::string& err) {

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -28,3 +30,10 @@ struct TemporaryFolder {
     return n;
   }
 };
+
+// All of a file; nothing of one that is not there.
+inline std::string contentOf(const std::string& path) {
+  std::ostringstream all;
+  all << std::ifstream(path, std::ios::binary).rdbuf();
+  return all.str();
+}

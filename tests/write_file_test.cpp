@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <fstream>
 #include <string>
 #include <thread>
 
@@ -20,11 +19,6 @@ using namespace obscura::engine;
 using Bytes = std::vector<uint8_t>;
 
 namespace {
-
-std::string content(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return std::string((std::istreambuf_iterator<char>(in)), {});
-}
 
 Bytes text(const std::string& s) { return Bytes(s.begin(), s.end()); }
 
@@ -42,7 +36,7 @@ TEST_CASE("write file: a file appears whole, with the umask's permissions, and n
   const bool ok = writeFileAtomically(folder / "a", text("hello")).ok();
   umask(old);
   REQUIRE(ok);
-  REQUIRE(content(folder / "a") == "hello");
+  REQUIRE(contentOf(folder / "a") == "hello");
   REQUIRE(modeOf(folder / "a") == 0640);
   REQUIRE(folder.files() == 1);
 }
@@ -53,7 +47,7 @@ TEST_CASE("write file: replacing keeps permissions and links") {
   chmod((folder / "a").c_str(), 0604);
   REQUIRE(symlink("a", (folder / "link").c_str()) == 0);
   REQUIRE(writeFileAtomically(folder / "link", text("new")).ok());
-  REQUIRE(content(folder / "a") == "new");
+  REQUIRE(contentOf(folder / "a") == "new");
   REQUIRE(modeOf(folder / "a") == 0604);
   REQUIRE(std::filesystem::is_symlink(folder / "link"));
   REQUIRE(folder.files() == 2);
@@ -74,7 +68,7 @@ TEST_CASE("write file: a write that fails half-way leaves the old file and no te
   int status = -1;
   waitpid(child, &status, 0);
   REQUIRE(status == 0);
-  REQUIRE(content(folder / "a") == "old");
+  REQUIRE(contentOf(folder / "a") == "old");
   REQUIRE(folder.files() == 1);
 }
 
@@ -135,10 +129,10 @@ TEST_CASE("write file: a handler can delete what is half written, and only that"
   int status = -1;
   waitpid(child, &status, 0);
   REQUIRE(WEXITSTATUS(status) == 42);
-  REQUIRE(content(folder / "kept") == "old");
+  REQUIRE(contentOf(folder / "kept") == "old");
   REQUIRE(folder.files() == 1);
   removePendingTemporaries();
-  REQUIRE(content(folder / "kept") == "old");
+  REQUIRE(contentOf(folder / "kept") == "old");
 }
 
 TEST_CASE("write file: many threads write at once and each gets its file") {
@@ -153,5 +147,5 @@ TEST_CASE("write file: many threads write at once and each gets its file") {
   for (std::thread& t : threads) t.join();
   REQUIRE(failures == 0);
   REQUIRE(folder.files() == 12);
-  for (int t = 0; t < 12; ++t) REQUIRE(content(folder / std::to_string(t)) == std::string(3000, char('a' + t)));
+  for (int t = 0; t < 12; ++t) REQUIRE(contentOf(folder / std::to_string(t)) == std::string(3000, char('a' + t)));
 }
