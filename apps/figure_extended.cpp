@@ -55,7 +55,7 @@ engine::SceneLight lampLight() {
 }
 
 // The light that the surfaces send each other, from what the lamp's light leaves on them at its first reflection.
-std::array<glm::vec3, 6> reflectedLight(const engine::Scene& scene, const FigureSettings& figure) {
+std::vector<post::AmbientDirection> reflectedLight(const engine::Scene& scene, const FigureSettings& figure) {
   const std::vector<engine::SceneLight> lights = {lampLight()};
   const engine::BouncedLight direct(scene, lights, true, figure.raster);
   raster::Parallel parallel(figure.raster.threads);
@@ -82,9 +82,9 @@ FigureContent makeExtendedFigure(const FigureSettings& figure) {
   engine::FrameSettings& s = stage.settings;
   s.transfer.samples = 32;
   s.tone.curve = post::ToneCurve::Neutral;
-  const std::array<glm::vec3, 6> colors = reflectedLight(stage.scene(), figure);
+  const std::vector<post::AmbientDirection> colors = reflectedLight(stage.scene(), figure);
   glm::vec3 mean(0);
-  for (const glm::vec3& c : colors) mean += c / 6.0f;
+  for (const post::AmbientDirection& k : colors) mean += k.color / 6.0f;
   const struct {
     const char* label;
     bool extended;
@@ -97,7 +97,7 @@ FigureContent makeExtendedFigure(const FigureSettings& figure) {
   out.columns = 2;
   out.numbers.columns = {"white sphere", "left red", "left green", "right red", "right green"};
   for (const auto& panel : kPanels) {
-    s.ambientDirections.reset();
+    s.ambientDirections.clear();
     s.ambientLight = glm::vec3((mean.x + mean.y + mean.z) / 3);  // as bright, grey
     if (panel.extended) s.ambientDirections = colors, s.ambientLight = glm::vec3(1);
     s.ambient = panel.occlusion;

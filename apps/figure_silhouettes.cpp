@@ -3,6 +3,7 @@
 
 #include "obscura/apps/figure_scenes.h"
 #include "obscura/apps/figure_stage.h"
+#include "obscura/engine/ambient_directions.h"
 
 namespace obscura::apps {
 
@@ -12,7 +13,7 @@ FigureContent makeSilhouettesFigure(const FigureSettings& figure) {
   for (FigureStage* s : {&stage, &empty}) {
     s->settings.transfer.samples = 24;
     // Most comes from above, the least from the left.
-    s->settings.ambientDirections = {glm::vec3(0.9f, 0.85f, 0.8f), glm::vec3(0.6f), glm::vec3(1.0f), glm::vec3(0.65f), glm::vec3(0.85f), glm::vec3(0.7f)};
+    s->settings.ambientDirections = engine::cubeOf({glm::vec3(0.9f, 0.85f, 0.8f), glm::vec3(0.6f), glm::vec3(1.0f), glm::vec3(0.65f), glm::vec3(0.85f), glm::vec3(0.7f)});
   }
   const engine::Frame truth = empty.render(empty.settings);
   const engine::Frame with = stage.render(stage.settings);

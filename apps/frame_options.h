@@ -54,7 +54,8 @@ struct FrameOptions {
   glm::vec3 background{0};                // linear
   std::optional<glm::vec3> ambientLight;  // alike; empty: 1, or what engine::extendedAmbient() chooses
   bool ambientExtended = false;           // see engine::extendedAmbient
-  std::optional<std::array<glm::vec3, 6>> ambientDirections;   // as in engine::FrameSettings
+  std::optional<int> ambientClasses;      // of that; empty: 6
+  std::optional<std::array<glm::vec3, 6>> ambientDirections;   // see engine::cubeOf
   std::vector<std::pair<std::string, glm::vec3>> ambientNodes;  // as in engine::LoadOptions
   EnvironmentOptions environment;
   LightOptions light;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -61,6 +62,13 @@ void addAmbientVariants(CLI::App& app, FrameOptions& o) {
          "file's nodes say, else --ambient-light]")
       ->type_name("NAME=COLOR")
       ->allow_extra_args(false)
+      ->group("View");
+  addRead(app, "--ambient-classes", "4...256",
+          "how many directions --ambient-light extended tells surfaces apart by: C of the paper; with more of them they send each other more alike [6]",
+          [&o](const std::string& text) {
+            o.ambientClasses = numberOf<int>(text);
+            return o.ambientClasses && *o.ambientClasses >= engine::kLeastClasses && *o.ambientClasses <= engine::kMostClasses;
+          })
       ->group("View");
   addRead(app, "--ambient-directional", "PX/NX/PY/NY/PZ/NZ",
           "factors on the ambient light by the direction of a surface: six colours, of surfaces that face +x, -x, +y, -y, +z "
@@ -144,6 +152,7 @@ void addLight(CLI::App& app, FrameOptions& o) {
 void checkLight(const FrameOptions& o) {
   if (o.environment.background && o.environment.file.empty())
     throw CLI::ValidationError("--background", "environment needs --environment FILE");
+  if (o.ambientClasses && !o.ambientExtended) throw CLI::ValidationError("--ambient-classes", "these are of --ambient-light extended: add that");
   if (o.ambientExtended && (o.ambientDirections || !o.environment.file.empty()))
     throw CLI::ValidationError("--ambient-light", std::string("extended and ") + (o.ambientDirections ? "--ambient-directional" : "--environment") +
                                                       " cannot be had at once: both say what comes from where");
@@ -151,7 +160,7 @@ void checkLight(const FrameOptions& o) {
 
 engine::Result<engine::Done> resolveLight(const FrameOptions& o, const engine::Scene& scene, engine::FrameSettings& frame) {
   frame.ambientLight = o.ambientLight.value_or(glm::vec3(1));
-  frame.ambientDirections = o.ambientDirections;
+  if (o.ambientDirections) frame.ambientDirections = engine::cubeOf(*o.ambientDirections);
   frame.sceneLights = o.light.ofFile;
   frame.shadows = o.light.shadows;
   frame.shadowSize = o.light.shadowSize;
@@ -163,10 +172,10 @@ engine::Result<engine::Done> resolveLight(const FrameOptions& o, const engine::S
     std::vector<engine::SceneLight> lights = o.light.ofFile ? scene.lights : std::vector<engine::SceneLight>();
     lights.insert(lights.end(), frame.lights.begin(), frame.lights.end());
     const engine::BouncedLight direct(scene, lights, o.light.shadows, o.raster);
-    const auto colors = engine::extendedAmbient(scene, o.ambientLight ? std::optional<glm::dvec3>(*o.ambientLight) : std::nullopt, parallel, &direct);
+    auto colors = engine::extendedAmbient(scene, o.ambientLight ? std::optional<glm::dvec3>(*o.ambientLight) : std::nullopt, parallel, &direct, o.ambientClasses.value_or(6));
     if (!colors) return colors.error();
     frame.ambientLight = glm::vec3(1);
-    frame.ambientDirections = *colors;
+    frame.ambientDirections = std::move(*colors);
   }
   if (!o.environment.file.empty()) {
     engine::Result<engine::Environment> read =

@@ -22,12 +22,6 @@ glm::dvec3 inView(const glm::dmat4& viewFromWorld, const glm::dvec3& direction) 
 
 }  // namespace
 
-std::array<glm::dvec3, 6> cubeDirections() {
-  std::array<glm::dvec3, 6> all;
-  for (size_t k = 0; k < 6; ++k) all[k] = glm::dvec3(0), all[k][int(k / 2)] = k % 2 ? -1 : 1;
-  return all;
-}
-
 glm::dmat3 viewFromEnvironment(const raster::Camera& camera, double degrees) {
   const double angle = degrees * 0.017453292519943295, c = raster::exactCos(angle), s = raster::exactSin(angle);
   const glm::dvec3 axes[3] = {{c, 0, -s}, {0, 1, 0}, {s, 0, c}};
@@ -62,9 +56,8 @@ post::AmbientLight ambientLightOf(const Scene& scene, const FrameSettings& setti
   if (settings.environment)
     light.environment = quadricOf(settings.environment->harmonics, viewFromEnvironment(settings.camera, settings.environmentRotation),
                                   settings.environmentIntensity);
-  if (settings.ambientDirections)
-    for (size_t k = 0; k < 6; ++k)
-      light.directions.push_back({glm::vec3(inView(settings.camera.viewFromWorld, cubeDirections()[k])), (*settings.ambientDirections)[k]});
+  light.directions = settings.ambientDirections;
+  for (post::AmbientDirection& k : light.directions) k.direction = glm::vec3(inView(settings.camera.viewFromWorld, glm::dvec3(k.direction)));
   return light;
 }
 

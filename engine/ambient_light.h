@@ -1,7 +1,6 @@
 // In: a scene and a frame's settings.  Out: the ambient light La(x) as the post process takes it.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "obscura/engine/frame.h"
@@ -12,9 +11,6 @@ namespace obscura::engine {
 
 // Some instance has an ambient light of its own.
 bool hasAmbientGroups(const Scene& scene);
-
-// The faces of a cube, in the order of FrameSettings::ambientDirections: +x, -x, +y, -y, +z, -z.
-std::array<glm::dvec3, 6> cubeDirections();
 
 // From directions of an environment map that is turned by so many degrees around +y, counter-clockwise seen from above, to
 // view space: a rotation, for cameras whose view is one but for a scale.

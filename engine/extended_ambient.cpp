@@ -7,7 +7,6 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "obscura/engine/ambient_light.h"
 #include "obscura/raster/srgb.h"
 
 namespace obscura::engine {
@@ -182,21 +181,21 @@ std::vector<glm::vec3> incomingLight(const std::vector<AmbientClass>& classes, c
   return incoming;
 }
 
-Result<std::array<glm::vec3, 6>> extendedAmbient(const Scene& scene, const std::optional<glm::dvec3>& light, raster::Parallel& parallel,
-                                                 const BouncedLight* direct) {
-  const std::array<glm::dvec3, 6> cube = cubeDirections();
-  const std::vector<AmbientClass> classes = ambientClasses(scene, {cube.begin(), cube.end()}, parallel, direct);
+Result<std::vector<post::AmbientDirection>> extendedAmbient(const Scene& scene, const std::optional<glm::dvec3>& light, raster::Parallel& parallel,
+                                                            const BouncedLight* direct, int count) {
+  const std::vector<AmbientClass> classes = ambientClasses(scene, spreadDirections(count), parallel, direct);
   const bool dark = std::none_of(classes.begin(), classes.end(), [](const AmbientClass& k) { return k.emitted.x + k.emitted.y + k.emitted.z > 0; });
   const std::vector<glm::vec3> in = incomingLight(classes, light.value_or(glm::dvec3(dark ? 1 : 0)));
   float mean = 0;
-  for (const glm::vec3& k : in) mean += (k.x + k.y + k.z) / 18;
-  std::array<glm::vec3, 6> colors;
-  for (size_t k = 0; k < 6; ++k) {
-    colors[k] = dark && !light ? in[k] / mean : in[k];
+  for (const glm::vec3& k : in) mean += (k.x + k.y + k.z) / float(3 * count);
+  std::vector<post::AmbientDirection> out;
+  for (size_t k = 0; k < classes.size(); ++k) {
+    const glm::vec3 color = dark && !light ? in[k] / mean : in[k];
     for (int c = 0; c < 3; ++c)
-      if (!(colors[k][c] >= 0 && colors[k][c] < 1e30f)) return Error{ErrorCode::BadInput, "the scene emits more light than floats hold", "", ""};
+      if (!(color[c] >= 0 && color[c] < 1e30f)) return Error{ErrorCode::BadInput, "the scene emits more light than floats hold", "", ""};
+    out.push_back({glm::vec3(classes[k].direction), color});
   }
-  return colors;
+  return out;
 }
 
 }  // namespace obscura::engine

@@ -2,12 +2,12 @@
 // Out: the light that arrives from the scene at a surface of each class (Castro, Neumann, Sbert: Extended Ambient Term).
 #pragma once
 
-#include <array>
 #include <optional>
 #include <vector>
 
 #include <glm/vec3.hpp>
 
+#include "obscura/engine/ambient_directions.h"
 #include "obscura/engine/bounced_light.h"
 #include "obscura/engine/result.h"
 #include "obscura/engine/scene.h"
@@ -37,11 +37,12 @@ std::vector<AmbientClass> ambientClasses(const Scene& scene, const std::vector<g
 // closed room whose walls absorb nothing light would have no end. In_k of one class alone is `light`.
 std::vector<glm::vec3> incomingLight(const std::vector<AmbientClass>& classes, const glm::dvec3& light);
 
-// Both, for the six faces of a cube: FrameSettings::ambientDirections, to be used with an ambient light of 1. Without a light
+// Both, for as many classes as spreadDirections() takes: FrameSettings::ambientDirections, to be used with an ambient light of 1.
+// More of them make it less: a class gets nothing of itself alone, and what that is becomes ever less. Without a light
 // there is that of the scene's emitters and of `direct` lights alone; where nothing emits, white light from everywhere, such that its mean over
 // classes and channels is 1 with all reflections: as bright as the constant term, as in an open scene reflections would
 // only add to a light that is not there. BadInput: a light beyond what floats hold.
-Result<std::array<glm::vec3, 6>> extendedAmbient(const Scene& scene, const std::optional<glm::dvec3>& light, raster::Parallel& parallel,
-                                                 const BouncedLight* direct = nullptr);
+Result<std::vector<post::AmbientDirection>> extendedAmbient(const Scene& scene, const std::optional<glm::dvec3>& light, raster::Parallel& parallel,
+                                                            const BouncedLight* direct = nullptr, int classes = 6);
 
 }  // namespace obscura::engine

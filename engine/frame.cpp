@@ -117,7 +117,7 @@ void Renderer::State::drawGBuffer(const raster::DrawList& list, const FrameSetti
 std::optional<post::AskedInput> Renderer::State::asking(const FrameSettings& s, const FrameNeeds& needs, const raster::GBuffer& g) const {
   if (reference || !settings.skip || !(needs.onlyLit || window.width > filteredWindow(s).width)) return std::nullopt;
   post::AskedInput question{&g, part, s.transfer.filter, needs.onlyLit, {}};
-  if (!needs.radiance) question.ambient = ambient.instances;
+  if (!needs.radiance && !ambient.adds()) question.ambient = ambient.instances;
   question.glossy = isGlossy(needs.brdf);
   return question;
 }

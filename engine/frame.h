@@ -2,7 +2,6 @@
 // Out: the frame: every plane that these need, and nothing else.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -37,10 +36,10 @@ struct FrameSettings {
   post::Brdf brdf = post::Brdf::Gltf;
   post::Occlusion ambient = post::Occlusion::Transfer;
   post::AmbientSettings transfer;
-  // La, linear: of what belongs to no node group of its own (Instance::ambient), and a factor by the direction of the
-  // normal: colours from +x, -x, +y, -y, +z and -z of the world, see post::AmbientLight.
+  // La, linear: of what belongs to no node group of its own (Instance::ambient), and factors on it and light besides it by
+  // the direction of the normal, see post::AmbientLight, whose directions are here the world's. At most kMostClasses.
   glm::vec3 ambientLight{1};
-  std::optional<std::array<glm::vec3, 6>> ambientDirections;
+  std::vector<post::AmbientDirection> ambientDirections;
   // In place of ambientLight; node groups of their own keep theirs, and directions are factors on it, too. If it has reflections,
   // they are the specular light of a glossy BRDF, without those factors.
   std::shared_ptr<const Environment> environment;

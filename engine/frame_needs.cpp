@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <glm/geometric.hpp>
+
+#include "obscura/engine/ambient_directions.h"
 #include "obscura/engine/ambient_light.h"
 #include "obscura/engine/direct_lights.h"
 #include "obscura/raster/view.h"
@@ -22,14 +25,14 @@ bool hasDarkThings(const Scene& scene, post::Brdf brdf) {
 
 // No ambient light at all: nothing to be occluded.
 bool isDark(const Scene& scene, const FrameSettings& s) {
-  return s.ambientLight == glm::vec3(0) && !s.environment && !hasAmbientGroups(scene);
+  return s.ambientLight == glm::vec3(0) && !s.environment && !hasAmbientGroups(scene) && !post::addsLight(s.ambientDirections);
 }
 
 bool wants(const FrameSettings& s, Aov aov) { return std::find(s.aovs.begin(), s.aovs.end(), aov) != s.aovs.end(); }
 
 }  // namespace
 
-bool lightsByNormal(const FrameSettings& s) { return s.ambientDirections || s.environment; }
+bool lightsByNormal(const FrameSettings& s) { return !s.ambientDirections.empty() || s.environment; }
 
 FrameNeeds needsOf(const Scene& scene, const FrameSettings& s) {
   const auto wants = [&](Aov aov) { return engine::wants(s, aov); };
@@ -91,8 +94,12 @@ const char* wrongSetting(const FrameSettings& s) {
   const auto isColor = [](const glm::vec3& v) {
     return v.x >= 0 && v.y >= 0 && v.z >= 0 && std::max({v.x, v.y, v.z}) < 1e30f;
   };
+  if (s.ambientDirections.size() > size_t(kMostClasses)) return "the ambient light can have at most 256 directions";
   bool colors = isColor(s.ambientLight) && isColor(s.background);
-  for (int k = 0; s.ambientDirections && k < 6; ++k) colors &= isColor((*s.ambientDirections)[size_t(k)]);
+  for (const post::AmbientDirection& k : s.ambientDirections) {
+    colors &= isColor(k.color) && isColor(k.added);
+    if (!(std::fabs(glm::dot(k.direction, k.direction) - 1) < 1e-3f)) return "the ambient light's directions must have the length 1";
+  }
   return colors ? nullptr : "colours must be 0 or more and finite";
 }
 

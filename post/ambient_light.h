@@ -2,6 +2,7 @@
 // from an environment (both papers: it "may slowly change", as from room to room).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -13,10 +14,11 @@
 
 namespace obscura::post {
 
-// Light from around a direction f, as the classes of Castro, Neumann and Sbert's "Extended Ambient Term".
+// Light of what faces a direction f, as the classes of Castro, Neumann and Sbert's "Extended Ambient Term".
 struct AmbientDirection {
   glm::vec3 direction{0, 0, 1};  // unit; in the space of the G-buffer's normals: x right, y up, z towards the eye
-  glm::vec3 color{1};            // linear, >= 0 and finite
+  glm::vec3 color{1};            // a factor on the light from everywhere; linear, >= 0 and finite
+  glm::vec3 added{0};            // light besides that; alike
 };
 
 // La of a surface by its unit normal n as a quadratic form, which is what the nine spherical harmonics up to the second
@@ -28,14 +30,19 @@ struct NormalQuadric {
   glm::vec3 most{0};  // of any unit normal, >= 0
 };
 
+inline bool addsLight(const std::vector<AmbientDirection>& directions) {
+  return std::any_of(directions.begin(), directions.end(), [](const AmbientDirection& k) { return k.added != glm::vec3(0); });
+}
+
 constexpr glm::vec3 kNoOwnLight(-1);  // in a table of instances' lights; its first component decides
 
-// La(instance, n) = L(instance, n) D(n), per channel:
+// La(instance, n) = L(instance, n) D(n) + A(n), per channel:
 //   L  instances[id] for the ids that it has and that are not kNoOwnLight, else that of the environment if there is one, else
 //      color
 //   D  sum_k w_k color_k / sum_k w_k with w_k = max(0, n . f_k); 1 without directions. Where the sum of the weights is not
 //      in (0, 1e8), as of a normal that is zero or no number, the mean of the colours.
-// Whatever the normals hold, D is not above the largest colour but for roundings.
+//   A  alike of what directions add; 0 if none of them does.
+// Whatever the normals hold, D and A are not above the largest of their colours but for roundings.
 struct AmbientLight {
   glm::vec3 color{1};                       // linear, >= 0 and finite
   raster::Span<const glm::vec3> instances;  // by the G-buffer's instance ids, alike; at most 2^29
@@ -47,6 +54,7 @@ struct AmbientLight {
   // Planes of the G-buffer that La is read from.
   bool needsInstance() const { return !instances.empty(); }
   bool needsNormal() const { return !directions.empty() || environment; }
+  bool adds() const { return addsLight(directions); }
 };
 
 // Scalar twin of orOfInstance() in instance_light-inl.h: whether the pixel shows an instance with a light of its own.

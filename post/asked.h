@@ -20,7 +20,7 @@ struct AskedInput {
   // nothing, but for empty ones, which cost nothing in any case.
   bool onlyLit = false;
   // With onlyLit: La by the G-buffer's instance ids, as in AmbientLight; instances of La = 0 ask for nothing. Must be empty
-  // where a pixel gets other light than La through the sums (TransferAlbedo::Radiance).
+  // where a pixel gets other light than that through the sums: with TransferAlbedo::Radiance, and where directions add some.
   raster::Span<const glm::vec3> ambient;
   bool glossy = false;  // of the BRDF: what reflects nothing is unlit, not all that has the albedo 0
 };

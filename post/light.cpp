@@ -21,32 +21,52 @@ HWY_INLINE V3 loaded(const raster::Plane<float> (&planes)[3], int x, int y) {
   return {hn::LoadU(d, planes[0].row(y) + x), hn::LoadU(d, planes[1].row(y) + x), hn::LoadU(d, planes[2].row(y) + x)};
 }
 
-// La for vectors of pixels. Which of its parts there are is the same for all of a frame.
+struct Ambients {
+  V3 la;             // L D + A
+  V3 factor, added;  // D and A; only with directions, A only if they add light
+};
+
+// For vectors of pixels. Which of its parts there are is the same for all of a frame.
 template <bool kVaries>
 class Ambient {
  public:
-  Ambient(const raster::GBuffer& g, const AmbientLight& in) : g_(g), in_(in) {
-    for (const AmbientDirection& k : in.directions) mean_ += k.color;
-    if (!in.directions.empty()) mean_ /= float(in.directions.size());
+  Ambient(const raster::GBuffer& g, const AmbientLight& in) : g_(g), in_(in), adds_(in.adds()) {
+    mean_.color = mean_.added = glm::vec3(0);
+    for (const AmbientDirection& k : in.directions) mean_.color += k.color, mean_.added += k.added;
+    if (!in.directions.empty()) mean_.color /= float(in.directions.size()), mean_.added /= float(in.directions.size());
   }
 
-  HWY_INLINE V3 at(int x, int y) const {
+  bool directed() const { return kVaries && !in_.directions.empty(); }
+  bool adds() const { return kVaries && adds_; }
+
+  HWY_INLINE Ambients at(int x, int y) const {
     const DF d;
-    V3 la{hn::Set(d, in_.color.x), hn::Set(d, in_.color.y), hn::Set(d, in_.color.z)};
-    if (!kVaries) return la;
+    Ambients out;
+    V3& la = out.la;
+    la = {hn::Set(d, in_.color.x), hn::Set(d, in_.color.y), hn::Set(d, in_.color.z)};
+    if (!kVaries) return out;
     if (in_.environment) la = ofEnvironment(x, y);
     if (!in_.instances.empty()) la = orOfInstance(in_.instances, g_.instance, x, y, la);
-    return byDirection(la, x, y);
-  }
-
-  // Times D(n).
-  HWY_INLINE V3 byDirection(const V3& light, int x, int y) const {
-    if (!kVaries || in_.directions.empty()) return light;
-    const V3 by = byNormal(x, y);
-    return {hn::Mul(light.x, by.x), hn::Mul(light.y, by.y), hn::Mul(light.z, by.z)};
+    if (!directed()) return out;
+    byNormal(x, y, out);
+    la = product(la, out.factor);
+    if (adds()) la = sum(la, out.added);
+    return out;
   }
 
  private:
+  static HWY_INLINE V3 product(const V3& a, const V3& b) { return {hn::Mul(a.x, b.x), hn::Mul(a.y, b.y), hn::Mul(a.z, b.z)}; }
+  static HWY_INLINE V3 sum(const V3& a, const V3& b) { return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)}; }
+  static HWY_INLINE V3 weighted(VF weight, const glm::vec3& color) {
+    const DF d;
+    return {hn::Mul(weight, hn::Set(d, color.x)), hn::Mul(weight, hn::Set(d, color.y)), hn::Mul(weight, hn::Set(d, color.z))};
+  }
+  static HWY_INLINE V3 quotient(MF sound, const V3& sum, VF by, const glm::vec3& otherwise) {
+    const DF d;
+    return {hn::IfThenElse(sound, hn::Div(sum.x, by), hn::Set(d, otherwise.x)), hn::IfThenElse(sound, hn::Div(sum.y, by), hn::Set(d, otherwise.y)),
+            hn::IfThenElse(sound, hn::Div(sum.z, by), hn::Set(d, otherwise.z))};
+  }
+
   // One channel of the quadratic form.
   static HWY_INLINE VF quadric(const NormalQuadric& q, int c, const V3& n) {
     const DF d;
@@ -65,29 +85,30 @@ class Ambient {
     return {quadric(q, 0, n), quadric(q, 1, n), quadric(q, 2, n)};
   }
 
-  HWY_INLINE V3 byNormal(int x, int y) const {
+  // D and A.
+  HWY_INLINE void byNormal(int x, int y, Ambients& out) const {
     const DF d;
     const VF zero = hn::Zero(d);
     const V3 n = loaded(g_.normal, x, y);
-    V3 sum{zero, zero, zero};
+    V3 factors{zero, zero, zero}, lights{zero, zero, zero};
     VF weights = zero;
     for (const AmbientDirection& k : in_.directions) {
       const VF facing = dot(n, {hn::Set(d, k.direction.x), hn::Set(d, k.direction.y), hn::Set(d, k.direction.z)});
       const VF weight = hn::IfThenElseZero(hn::Gt(facing, zero), facing);
       weights = hn::Add(weights, weight);
-      sum = {hn::Add(sum.x, hn::Mul(weight, hn::Set(d, k.color.x))), hn::Add(sum.y, hn::Mul(weight, hn::Set(d, k.color.y))),
-             hn::Add(sum.z, hn::Mul(weight, hn::Set(d, k.color.z)))};
+      factors = sum(factors, weighted(weight, k.color));
+      if (adds()) lights = sum(lights, weighted(weight, k.added));
     }
     const MF sound = hn::And(hn::Gt(weights, zero), hn::Lt(weights, hn::Set(d, 1e8f)));
     const VF by = hn::IfThenElse(sound, weights, hn::Set(d, 1.0f));
-    return {hn::IfThenElse(sound, hn::Div(sum.x, by), hn::Set(d, mean_.x)),
-            hn::IfThenElse(sound, hn::Div(sum.y, by), hn::Set(d, mean_.y)),
-            hn::IfThenElse(sound, hn::Div(sum.z, by), hn::Set(d, mean_.z))};
+    out.factor = quotient(sound, factors, by, mean_.color);
+    if (adds()) out.added = quotient(sound, lights, by, mean_.added);
   }
 
   const raster::GBuffer& g_;
   const AmbientLight& in_;
-  glm::vec3 mean_{0};  // of the directions' colours
+  const bool adds_;
+  AmbientDirection mean_;  // of the directions' colours
 };
 
 HWY_INLINE MF seenAt(const raster::GBuffer& g, int x, int y) {
@@ -127,22 +148,29 @@ void lightRows(const LightInput& in, int y0, int y1, LinearColor& out) {
         for (int c = 0; c < 3; ++c) hn::StoreU(hn::Set(d, in.background[c]), d, out.rgb[c].row(y) + x);
         continue;
       }
-      const V3 la = ambient.at(x, y);
+      const Ambients arriving = ambient.at(x, y);
       const Reflectances r = reflectances<kBrdf>(g, directions, mirrors, x, y);
-      const VF channels[3] = {la.x, la.y, la.z}, colors[3] = {r.ambient.x, r.ambient.y, r.ambient.z};
-      const V3 shown = mirrors ? ambient.byDirection(r.mirrored, x, y) : r.mirrored;
-      const VF mirrored[3] = {shown.x, shown.y, shown.z};
+      const VF channels[3] = {arriving.la.x, arriving.la.y, arriving.la.z}, colors[3] = {r.ambient.x, r.ambient.y, r.ambient.z};
+      const VF mirrored[3] = {r.mirrored.x, r.mirrored.y, r.mirrored.z};
+      const VF factors[3] = {arriving.factor.x, arriving.factor.y, arriving.factor.z};
+      const VF added[3] = {arriving.added.x, arriving.added.y, arriving.added.z};
       for (int c = 0; c < 3; ++c) {
         VF color = colors[c];
+        const auto dimmed = [&](VF v) {  // by O or W
+          if (obscured) return hn::Mul(v, hn::LoadU(d, in.transfer->obscurance.row(y) + x));
+          if (in.occlusion == Occlusion::Transfer) return hn::Mul(v, hn::LoadU(d, in.transfer->w[c].row(y) + x));
+          return v;
+        };
         if (bounced) {
-          const VF arriving = hn::Mul(hn::LoadU(d, in.transfer->obscurance.row(y) + x), channels[c]);
-          color = hn::Mul(color, hn::Add(arriving, hn::LoadU(d, in.transfer->bounced[c].row(y) + x)));
+          color = hn::Mul(color, hn::Add(dimmed(channels[c]), hn::LoadU(d, in.transfer->bounced[c].row(y) + x)));
         } else {
-          if (obscured) color = hn::Mul(color, hn::LoadU(d, in.transfer->obscurance.row(y) + x));
-          else if (in.occlusion == Occlusion::Transfer) color = hn::Mul(color, hn::LoadU(d, in.transfer->w[c].row(y) + x));
-          color = hn::Mul(color, channels[c]);
+          color = hn::Mul(dimmed(color), channels[c]);
         }
-        if (mirrors) color = hn::Add(color, hn::Mul(mirrored[c], hn::LoadU(d, in.reflected->rgb[c].row(y) + x)));
+        if (mirrors) {
+          const VF share = ambient.directed() ? hn::Mul(mirrored[c], factors[c]) : mirrored[c];
+          color = hn::Add(color, hn::Mul(share, hn::LoadU(d, in.reflected->rgb[c].row(y) + x)));
+          if (ambient.adds()) color = hn::Add(color, hn::Mul(dimmed(mirrored[c]), added[c]));
+        }
         if (in.direct) color = hn::Add(color, hn::LoadU(d, in.direct->rgb[c].row(y) + x));
         if (emits) color = hn::Add(color, hn::LoadU(d, g.emissive[c].row(y) + x));
         hn::StoreU(hn::IfThenElse(seen, color, hn::Set(d, in.background[c])), d, out.rgb[c].row(y) + x);
@@ -173,7 +201,7 @@ void TransferOfBounced(const LightInput& in, int y0, int y1, raster::Plane<float
   for (int y = y0; y < y1; ++y)
     for (int x = 0; x < g.width; x += int(hn::Lanes(d))) {
       const MF seen = seenAt(g, x, y);
-      const V3 la = ambient.at(x, y);
+      const V3 la = ambient.at(x, y).la;
       const VF channels[3] = {la.x, la.y, la.z}, o = hn::LoadU(d, in.transfer->obscurance.row(y) + x);
       for (int c = 0; c < 3; ++c) {
         const MF lit = hn::Gt(channels[c], hn::Zero(d));

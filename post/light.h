@@ -30,7 +30,7 @@ struct LightInput {
   Brdf brdf = Brdf::Lambert;
   Projector projector = {};            // of a glossy BRDF: where the G-buffer's pixels look
   // Of a glossy BRDF, what arrives from where it mirrors (environment_reflection.h), in place of La and what modulates it in the
-  // specular part of R_A: Lr = kd W La + S(v) D reflected + emission. Null: La there, too. May be what light() writes to.
+  // specular part of R_A: Lr = kd W La + S(v) (D reflected + W A) + emission. Null: La there, too. May be what light() writes to.
   const LinearColor* reflected = nullptr;
 };
 

@@ -19,27 +19,31 @@ glm::vec3 fromEnvironment(const NormalQuadric& q, float x, float y, float z) {
   return la;
 }
 
-// D(n).
-glm::vec3 factorAt(const AmbientLight& in, const raster::GBuffer& g, int x, int y) {
-  if (in.directions.empty()) return glm::vec3(1);
+// D(n), or A(n).
+glm::vec3 meanByDirection(const AmbientLight& in, glm::vec3 AmbientDirection::*of, const raster::GBuffer& g, int x, int y) {
   glm::vec3 sum(0), all(0);
   float weights = 0;
   for (const AmbientDirection& k : in.directions) {
     const float cosine = g.normal[0].at(x, y) * k.direction.x + g.normal[1].at(x, y) * k.direction.y +
                          g.normal[2].at(x, y) * k.direction.z;
-    all += k.color;
+    all += k.*of;
     if (!(cosine > 0)) continue;
     weights += cosine;
-    sum += cosine * k.color;
+    sum += cosine * (k.*of);
   }
   return weights > 0 && weights < 1e8f ? sum / weights : all / float(in.directions.size());
+}
+
+glm::vec3 factorAt(const AmbientLight& in, const raster::GBuffer& g, int x, int y) {
+  return in.directions.empty() ? glm::vec3(1) : meanByDirection(in, &AmbientDirection::color, g, x, y);
 }
 
 glm::vec3 ambientAt(const AmbientLight& in, const raster::GBuffer& g, int x, int y) {
   glm::vec3 la = in.color;
   if (in.environment) la = fromEnvironment(*in.environment, g.normal[0].at(x, y), g.normal[1].at(x, y), g.normal[2].at(x, y));
   if (hasOwnLight(in.instances, g.instance, x, y)) la = in.instances[g.instance.at(x, y)];
-  return la * factorAt(in, g, x, y);
+  la *= factorAt(in, g, x, y);
+  return in.adds() ? la + meanByDirection(in, &AmbientDirection::added, g, x, y) : la;
 }
 
 bool isSeen(const raster::GBuffer& g, int x, int y) { return g.depth.at(x, y) < std::numeric_limits<float>::infinity(); }
@@ -79,6 +83,12 @@ void lightRef(const LightInput& in, int y0, int y1, LinearColor& out) {
                           ? a * in.transfer->w[c].at(x, y) * la[c]
                           : a * (in.transfer->obscurance.at(x, y) * la[c] + in.transfer->bounced[c].at(x, y));
         if (mirrors) reflected += r.specular[c] * factor[c] * in.reflected->rgb[c].at(x, y);
+        if (mirrors && in.ambient.adds()) {
+          float dims = 1;
+          if (in.occlusion == Occlusion::Transfer && in.transfer->bounced[c].empty()) dims = in.transfer->w[c].at(x, y);
+          else if (in.occlusion != Occlusion::None) dims = in.transfer->obscurance.at(x, y);
+          reflected += r.specular[c] * dims * meanByDirection(in.ambient, &AmbientDirection::added, g, x, y)[c];
+        }
         if (in.direct) reflected += in.direct->rgb[c].at(x, y);
         const float emitted = g.emissive[c].empty() ? 0 : g.emissive[c].at(x, y);
         out.rgb[c].at(x, y) = isSeen(g, x, y) ? reflected + emitted : in.background[c];

@@ -56,6 +56,8 @@ TEST_CASE("cli: the file's lights shine unless they are switched off, and each o
   CHECK(isNew(w.scene, {"--headlight", "2"}));
   CHECK(isNew(w.lamp, {"--ambient-light", "0,0,0"}));
   CHECK(isNew(w.lamp, {"--ambient-light", "extended"}));
+  CHECK(isNew(w.lamp, {"--ambient-light", "extended", "--ambient-classes", "14"}));
+  CHECK(!isNew(w.lamp, {"--ambient-light", "extended", "--ambient-classes", "6"}));
   CHECK(isNew(w.lamp, {"--albedo", "radiance"}));
   CHECK(!isNew(w.scene, {"--sun", "10,20,30"}));  // a direction alone
 }
@@ -88,4 +90,6 @@ TEST_CASE("cli: lights that cannot be are refused") {
   refused({"--shadows", "soft"}, "--shadows");
   refused({"--shadow-size", "15"}, "--shadow-size");
   refused({"--shadow-size", "8193"}, "--shadow-size");
+  for (const char* count : {"3", "257", "0", "-6", "6.5", "99999999999", "six", ""}) refused({"--ambient-light", "extended", "--ambient-classes", count}, "4...256");
+  refused({"--ambient-classes", "8"}, "--ambient-light extended");
 }

@@ -45,7 +45,7 @@ engine::FrameSettings settingsOf(const TestScene& scene, uint32_t seed) {
   s.aovs = allAovs();
   s.display = true;
   s.background = {0.2f, 0.3f, 0.4f};
-  if (seed % 4 == 0) s.ambientDirections = kSixColors;
+  if (seed % 4 == 0) s.ambientDirections = seed % 8 ? sixDirections() : addingDirections(9);
   post::AmbientSettings& t = s.transfer;
   t.albedo = post::TransferAlbedo((seed + seed / 4) % 3);
   t.membership = seed % 2 ? post::Membership::Classic : post::Membership::Linear;

@@ -5,9 +5,8 @@
 
 #include <glm/geometric.hpp>
 
-#include "obscura/engine/ambient_light.h"
 #include "obscura/engine/extended_ambient.h"
-#include "frame_checks.h"
+#include "room_scene.h"
 
 using namespace obscura;
 using namespace obscura::tests;
@@ -16,65 +15,9 @@ using engine::Scene;
 
 namespace {
 
-std::vector<glm::dvec3> sixDirections() {
-  const auto cube = engine::cubeDirections();
-  return {cube.begin(), cube.end()};
-}
-
-std::vector<AmbientClass> classesOf(const Scene& scene, const std::vector<glm::dvec3>& directions = sixDirections(), int threads = 1) {
+std::vector<AmbientClass> classesOf(const Scene& scene, const std::vector<glm::dvec3>& directions = engine::spreadDirections(6), int threads = 1) {
   raster::Parallel parallel(threads);
   return engine::ambientClasses(scene, directions, parallel);
-}
-
-// One mesh, with a material of its own, in world space.
-struct Builder {
-  Scene scene;
-  void add(const TestMesh& from, const glm::vec3& albedo, const glm::vec3& emissive = glm::vec3(0)) {
-    engine::Mesh mesh;
-    mesh.positions = from.positions, mesh.normals = from.normals, mesh.indices = from.indices;
-    mesh.material = uint32_t(scene.materials.size());
-    raster::Material m;
-    m.baseColor = glm::vec4(albedo, 1), m.emissive = emissive;
-    scene.materials.push_back(m);
-    scene.instances.push_back({uint32_t(scene.meshes.size()), 0, glm::dmat4(1)});
-    scene.meshes.push_back(std::move(mesh));
-  }
-  void addQuad(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d, const glm::vec3& albedo,
-               const glm::vec3& emissive = glm::vec3(0)) {
-    TestMesh mesh;
-    TestScene::addQuad(mesh, a, b, c, d);
-    add(mesh, albedo, emissive);
-  }
-};
-
-// The inside of a cube of side 4; walls at -x and +x of their own.
-Builder room(const glm::vec3& left, const glm::vec3& right, const glm::vec3& rest) {
-  Builder b;
-  b.addQuad({-2, -2, 2}, {-2, -2, -2}, {-2, 2, -2}, {-2, 2, 2}, left);    // faces +x
-  b.addQuad({2, -2, -2}, {2, -2, 2}, {2, 2, 2}, {2, 2, -2}, right);       // faces -x
-  b.addQuad({-2, -2, 2}, {2, -2, 2}, {2, -2, -2}, {-2, -2, -2}, rest);    // floor
-  b.addQuad({-2, 2, -2}, {2, 2, -2}, {2, 2, 2}, {-2, 2, 2}, rest);        // ceiling
-  b.addQuad({-2, -2, -2}, {2, -2, -2}, {2, 2, -2}, {-2, 2, -2}, rest);    // faces +z
-  b.addQuad({2, -2, 2}, {-2, -2, 2}, {-2, 2, 2}, {2, 2, 2}, rest);        // faces -z
-  return b;
-}
-
-TestMesh ball(double radius) {
-  TestMesh mesh;
-  const int rows = 16, columns = 32;
-  for (int i = 0; i <= rows; ++i)
-    for (int k = 0; k <= columns; ++k) {
-      const double u = 3.14159265358979 * i / rows, v = 2 * 3.14159265358979 * k / columns;
-      const glm::vec3 n(std::sin(u) * std::sin(v), std::cos(u), std::sin(u) * std::cos(v));
-      mesh.normals.push_back(n);
-      mesh.positions.push_back(n * float(radius));
-    }
-  for (uint32_t i = 0; i < uint32_t(rows); ++i)
-    for (uint32_t k = 0; k < uint32_t(columns); ++k) {
-      const uint32_t a = i * (columns + 1) + k, b = a + columns + 1;
-      for (uint32_t v : {a, b, a + 1, a + 1, b, b + 1}) mesh.indices.push_back(v);
-    }
-  return mesh;
 }
 
 double totalArea(const std::vector<AmbientClass>& classes) {
@@ -138,7 +81,7 @@ TEST_CASE("extended ambient: light in a closed room of one reflectance is the su
   // All walls emit E: B = E + rho B, and In = B = E / (1 - rho).
   for (const double rho : {0.0, 0.3, 0.9}) {
     std::vector<AmbientClass> classes;
-    for (const glm::dvec3& d : sixDirections()) classes.push_back({d, 2.0, glm::dvec3(2 * rho), glm::dvec3(2 * 0.7)});
+    for (const glm::dvec3& d : engine::spreadDirections(6)) classes.push_back({d, 2.0, glm::dvec3(2 * rho), glm::dvec3(2 * 0.7)});
     for (const glm::vec3& in : engine::incomingLight(classes, glm::dvec3(0))) CHECK(in.x == Approx(0.7 / (1 - rho)));
     // The same light from outside: In = light + rho In.
     for (AmbientClass& c : classes) c.emitted = glm::dvec3(0);
@@ -180,12 +123,12 @@ TEST_CASE("extended ambient: classes without area, white rooms and nothing at al
   const Scene empty;
   const auto nothing = engine::extendedAmbient(empty, glm::dvec3(0.5), parallel);
   REQUIRE(nothing.ok());
-  for (const glm::vec3& in : *nothing) CHECK(in == glm::vec3(0.5f));
+  for (const post::AmbientDirection& in : *nothing) CHECK(in.color == glm::vec3(0.5f));
 
   Builder white = room(glm::vec3(1), glm::vec3(1), glm::vec3(1));
   const auto lit = engine::extendedAmbient(white.scene, glm::dvec3(1), parallel);
   REQUIRE(lit.ok());
-  for (const glm::vec3& in : *lit) CHECK((in.x > 50 && in.x < 101));
+  for (const post::AmbientDirection& in : *lit) CHECK((in.color.x > 50 && in.color.x < 101));
 
   white.scene.materials[2].emissive = glm::vec3(1e38f);
   const auto blinding = engine::extendedAmbient(white.scene, glm::dvec3(1), parallel);
@@ -199,14 +142,14 @@ TEST_CASE("extended ambient: without a light it is that of the emitters, or as b
   const auto dark = engine::extendedAmbient(b.scene, std::nullopt, parallel);
   REQUIRE(dark.ok());
   float mean = 0;
-  for (const glm::vec3& in : *dark) mean += (in.x + in.y + in.z) / 18;
+  for (const post::AmbientDirection& in : *dark) mean += (in.color.x + in.color.y + in.color.z) / 18;
   CHECK(mean == Approx(1));
-  CHECK((*dark)[1].x > 1.03f * (*dark)[0].x);  // towards the red wall
+  CHECK((*dark)[1].color.x > 1.03f * (*dark)[0].color.x);  // towards the red wall
   b.scene.materials[3].emissive = glm::vec3(2);
   const auto lit = engine::extendedAmbient(b.scene, std::nullopt, parallel), alone = engine::extendedAmbient(b.scene, glm::dvec3(0), parallel);
   REQUIRE((lit.ok() && alone.ok()));
-  CHECK(*lit == *alone);
-  CHECK((*lit)[2].x > 0.1f);
+  for (size_t k = 0; k < 6; ++k) CHECK((*lit)[k].color == (*alone)[k].color);
+  CHECK((*lit)[2].color.x > 0.1f);
 }
 
 TEST_CASE("extended ambient: the number of threads changes no bit") {
@@ -218,7 +161,7 @@ TEST_CASE("extended ambient: the number of threads changes no bit") {
   b.add(many, {0.3f, 0.6f, 0.9f}, {0.1f, 0, 0});
   const std::vector<AmbientClass> expected = classesOf(b.scene);
   for (int threads : {2, 3, 8}) {
-    const std::vector<AmbientClass> found = classesOf(b.scene, sixDirections(), threads);
+    const std::vector<AmbientClass> found = classesOf(b.scene, engine::spreadDirections(6), threads);
     for (size_t k = 0; k < 6; ++k) {
       CHECK(found[k].area == expected[k].area);
       CHECK(found[k].reflected == expected[k].reflected);
@@ -263,7 +206,7 @@ TEST_CASE("extended ambient: the first bounce of direct light is rho E / pi of e
   const auto unshot = [&](const engine::SceneLight& light) {
     const engine::BouncedLight direct(b.scene, {&light, 1}, true, {});
     raster::Parallel parallel(2);
-    std::vector<AmbientClass> classes = engine::ambientClasses(b.scene, sixDirections(), parallel, &direct);
+    std::vector<AmbientClass> classes = engine::ambientClasses(b.scene, engine::spreadDirections(6), parallel, &direct);
     for (size_t k : {0u, 1u, 3u, 4u, 5u}) CHECK(classes[k].emitted == glm::dvec3(0));
     return classes[2].emitted;
   };
@@ -301,5 +244,5 @@ TEST_CASE("extended ambient: in a box whose floor the sun lights, the other wall
   raster::Parallel parallel(2);
   const auto in = engine::extendedAmbient(b.scene, std::nullopt, parallel, &direct);
   REQUIRE(in.ok());
-  for (size_t k = 0; k < 6; ++k) CHECK((*in)[k].x == Approx(k == 2 ? 0 : 0.5 / 5).margin(1e-6));
+  for (size_t k = 0; k < 6; ++k) CHECK((*in)[k].color.x == Approx(k == 2 ? 0 : 0.5 / 5).margin(1e-6));
 }

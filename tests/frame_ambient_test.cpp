@@ -49,7 +49,7 @@ engine::Frame wallSeenAlong(const glm::dvec3& view, const std::optional<glm::vec
   engine::FrameSettings settings = settingsOf(s);
   settings.camera = raster::perspective(0.7, 1.4, 0.1);
   settings.camera.viewFromWorld = raster::lookAt({0, 0, 0}, view, up);
-  if (!environment) settings.ambientDirections = kSixColors;
+  if (!environment) settings.ambientDirections = sixDirections();
   settings.environment = std::move(environment);
   settings.environmentRotation = rotation;
   return frameOf(scene, settings);
@@ -148,12 +148,12 @@ TEST_CASE("ambient frames: lit by an environment they have one digest for thread
   s.environmentIntensity = 1.7;
   s.environmentBackground = true;
   s.tone = {post::ToneCurve::Neutral, 1.3f};
-  s.ambientDirections = kSixColors;
   s.aovs = allAovs();
   s.display = true;
   for (auto albedo : {post::TransferAlbedo::Neighbour, post::TransferAlbedo::Radiance}) {
     s.transfer.albedo = albedo;
     s.supersample = albedo == post::TransferAlbedo::Radiance ? 2 : 1;
+    s.ambientDirections = albedo == post::TransferAlbedo::Radiance ? sixDirections() : addingDirections(20);
     const auto expected = imagesOf(frameOf(scene, s, {}, true));
     for (raster::Target target : raster::supportedTargets())
       for (int tile : {16, 64})
@@ -225,11 +225,12 @@ TEST_CASE("ambient frames: the picture alone is the one of a frame with all AOVs
     const engine::Scene scene = sceneFrom(soup);
     for (int albedo = 0; albedo < 3; ++albedo)
       for (int supersample : {1, 2})
-        for (bool directions : {false, true}) {
+        for (int directions : {0, 6, 14}) {
           engine::FrameSettings s = settingsOf(soup);
           s.transfer.albedo = post::TransferAlbedo(albedo);
           s.supersample = supersample;
-          if (directions) s.ambientDirections = kSixColors;
+          if (directions == 6) s.ambientDirections = sixDirections();
+          if (directions == 14) s.ambientDirections = addingDirections(14), s.ambientLight = glm::vec3(0);  // light that is added alone
           INFO("seed " << seed << " W " << albedo << " supersample " << supersample << " directions " << directions);
           s.aovs = allAovs();
           const engine::Frame all = frameOf(scene, s);
@@ -260,7 +261,7 @@ TEST_CASE("ambient frames: planes of ids and normals are there only if something
   s.ambient = post::Occlusion::None;
   s.brdf = post::Brdf::Lambert;
   CHECK(frameOf(scene, s).g.normal[0].empty());
-  s.ambientDirections = kSixColors;
+  s.ambientDirections = sixDirections();
   CHECK_FALSE(frameOf(scene, s).g.normal[0].empty());
 }
 
@@ -269,10 +270,17 @@ TEST_CASE("ambient frames: colours that are none are usage errors") {
   engine::Scene scene = sceneFrom(soup);
   engine::FrameSettings s = settingsOf(soup);
   engine::Frame frame;
-  s.ambientDirections = kSixColors;
-  (*s.ambientDirections)[4].y = -1;
+  s.ambientDirections = sixDirections();
+  s.ambientDirections[4].color.y = -1;
   CHECK(engine::Renderer().render(scene, s, frame).error().code == engine::ErrorCode::Usage);
-  s.ambientDirections.reset();
+  s.ambientDirections = addingDirections(7);
+  s.ambientDirections[4].added.z = std::numeric_limits<float>::infinity();
+  CHECK(engine::Renderer().render(scene, s, frame).error().code == engine::ErrorCode::Usage);
+  s.ambientDirections[4] = {{1, 1, 0}, glm::vec3(1)};
+  CHECK(engine::Renderer().render(scene, s, frame).error().code == engine::ErrorCode::Usage);
+  s.ambientDirections.assign(size_t(engine::kMostClasses) + 1, {});
+  CHECK(engine::Renderer().render(scene, s, frame).error().code == engine::ErrorCode::Usage);
+  s.ambientDirections.clear();
   for (double wrong : {-1.0, 1e7, std::numeric_limits<double>::quiet_NaN()}) {
     s.environmentIntensity = wrong;
     CHECK(engine::Renderer().render(scene, s, frame).error().code == engine::ErrorCode::Usage);

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "obscura/apps/pictures.h"
+#include "obscura/engine/ambient_directions.h"
 #include "obscura/engine/frame.h"
 #include "test_scene.h"
 
@@ -58,7 +59,15 @@ inline engine::Frame frameOf(const engine::Scene& scene, const engine::FrameSett
   return frame;
 }
 
-// Ambient light by direction.
+// Ambient light by direction: factors of six sides.
 constexpr std::array<glm::vec3, 6> kSixColors{glm::vec3{1, 0.5f, 0.5f}, {0.5f, 1, 0.5f}, {2, 2, 2}, {0, 0.1f, 0.2f}, {0.5f, 0.5f, 1}, {1, 1, 0}};
+inline std::vector<post::AmbientDirection> sixDirections() { return engine::cubeOf(kSixColors); }
+// Of that many directions, which also add light.
+inline std::vector<post::AmbientDirection> addingDirections(int count) {
+  std::vector<post::AmbientDirection> out;
+  for (const glm::dvec3& d : engine::spreadDirections(count))
+    out.push_back({glm::vec3(d), glm::vec3(0.5f) + 0.5f * glm::vec3(d), glm::vec3(0.3f) - 0.2f * glm::vec3(d)});
+  return out;
+}
 
 }  // namespace obscura::tests

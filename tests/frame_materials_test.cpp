@@ -49,7 +49,7 @@ TEST_CASE("materials: threads, targets, tile sizes, skipping and the scalar twin
         s.aovs = aovs;
         s.display = true;
         s.supersample = albedo == post::TransferAlbedo::Radiance ? 1 : 2;
-        if (brdf == Brdf::BlinnPhong) s.ambientDirections = kSixColors;
+        if (brdf == Brdf::BlinnPhong) s.ambientDirections = sixDirections();
         const auto expected = apps::digestLines(frameOf(materials(), s, {}, true), aovs);
         for (raster::Target target : raster::supportedTargets())
           for (int count : {1, 3, 8}) {

@@ -15,6 +15,7 @@
 #include "obscura/apps/demo_surfaces.h"
 #include "obscura/apps/pictures.h"
 #include "obscura/apps/report.h"
+#include "obscura/engine/ambient_directions.h"
 #include "obscura/engine/camera_choice.h"
 #include "obscura/engine/extended_ambient.h"
 #include "obscura/engine/gltf.h"
@@ -203,7 +204,7 @@ TEST_CASE("golden: the same with thresholded highlights of Blinn-Phong, lit by s
   const engine::Scene scene = tests::sceneOfGlb(apps::makeMaterialsScene());
   engine::FrameSettings s = frameOf(160, 120, scene);
   s.brdf = post::Brdf::BlinnPhongThresholded;
-  s.ambientDirections = {{{1, 0.5f, 0.5f}, {0.5f, 1, 0.5f}, {1.2f, 1.2f, 1.2f}, {0.1f, 0.1f, 0.2f}, {0.5f, 0.5f, 1}, {1, 1, 0.2f}}};
+  s.ambientDirections = engine::cubeOf({glm::vec3{1, 0.5f, 0.5f}, {0.5f, 1, 0.5f}, {1.2f, 1.2f, 1.2f}, {0.1f, 0.1f, 0.2f}, {0.5f, 0.5f, 1}, {1, 1, 0.2f}});
   checkGolden("blinn_phong", s, scene);
 }
 

@@ -79,6 +79,17 @@ TEST_CASE("ambient light: direction is a factor on the colour of the group") {
   CHECK(ambientOf(light, kAxes[3]) == glm::vec3(3, 5, 0));
 }
 
+TEST_CASE("ambient light: what directions add comes on top, whatever the light of the group") {
+  AmbientLight light = cube(kSix);
+  for (int k = 0; k < 6; ++k) light.directions[size_t(k)].added = glm::vec3(float(k), 0, 8);
+  const std::vector<glm::vec3> table{{3, 5, 7}, {0, 0, 0}};
+  light.instances = table;
+  CHECK(ambientOf(light, kAxes[3]) == glm::vec3(3 + 3, 5, 8));
+  CHECK(ambientOf(light, kAxes[3], 1) == glm::vec3(3, 0, 8));
+  CHECK(ambientOf(light, {0, 0.6f, 0.8f}, 1).x == Approx((0.6 * 2 + 0.8 * 4) / 1.4));
+  CHECK(ambientOf(light, glm::vec3(0), 1) == glm::vec3(2.5f, 0, 8));
+}
+
 TEST_CASE("ambient light: of a normal without direction it is the mean of the colours, never more than the largest") {
   const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
   const AmbientLight light = cube(kSix);
@@ -152,7 +163,10 @@ TEST_CASE("ambient light: every variant equals its scalar twin, with every W") {
     AmbientLight ambient(random.vector(0, 2));
     if (seed % 4 != 0) ambient.instances = table;
     if (seed % 3 != 1) ambient.environment = randomQuadric(random);
-    for (int k = random.integer(0, 3) * 3; k > 0; --k) ambient.directions.push_back({random.vector(-1, 1), random.vector(0, 2)});
+    for (int k = random.integer(0, 3) * 3; k > 0; --k) {
+      const glm::vec3 f = random.vector(-1, 1), color = random.vector(0, 2), added = random.vector(0, 1);
+      ambient.directions.push_back({f, color, seed % 2 ? added : glm::vec3(0)});
+    }
     AmbientSettings settings;
     settings.radius = 1;
     settings.albedo = post::TransferAlbedo(seed % 3);
