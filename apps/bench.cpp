@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "obscura/apps/bench_accuracy.h"
+#include "obscura/apps/bench_albedo.h"
 #include "obscura/apps/bench_error.h"
 #include "obscura/apps/bench_frame.h"
 #include "obscura/apps/bench_pareto.h"
@@ -31,6 +32,8 @@ int main(int argc, char** argv) {
   truth.addTo(app, status);
   obscura::apps::ParetoBenchmark pareto;
   pareto.addTo(app, status);
+  obscura::apps::AlbedoBenchmark albedo;
+  albedo.addTo(app, status);
   obscura::apps::ErrorBenchmark error;
   error.addTo(app, status);
   obscura::apps::PeersBenchmark peers;

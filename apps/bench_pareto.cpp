@@ -5,6 +5,7 @@
 
 #include "obscura/apps/bench_frame.h"
 #include "obscura/apps/bench_measure.h"
+#include "obscura/apps/error_output.h"
 #include "obscura/apps/gnuplot.h"
 #include "obscura/apps/ray_estimator.h"
 #include "obscura/apps/signals.h"
@@ -16,8 +17,6 @@
 
 namespace obscura::apps {
 namespace {
-
-constexpr double kMapScale = 0.25;  // error that the map shows in full colour
 
 template <class T>
 std::vector<std::string> namesOf(const Names<T>& names) {
@@ -77,14 +76,6 @@ std::string digestOfPlanes(const PlaneRefs& p) {
   return engine::digest(p.size() == 1 ? engine::interleave({p[0]}) : engine::interleave({p[0], p[1], p[2]}));
 }
 
-double rmsOver(const raster::Plane<float>& plane, const raster::Plane<uint8_t>& seen) {
-  double sum = 0, n = 0;
-  for (int y = 0; y < seen.height(); ++y)
-    for (int x = 0; x < seen.width(); ++x)
-      if (seen.at(x, y)) sum += double(plane.at(x, y)) * plane.at(x, y), ++n;
-  return std::sqrt(sum / std::max(n, 1.0));
-}
-
 }  // namespace
 
 ParetoBenchmark::ParetoBenchmark() {
@@ -122,7 +113,7 @@ void ParetoBenchmark::addTo(CLI::App& app, int& status) {
   c->add_option("--plot", plot, "RMSE over time, by gnuplot: .svg, .png, or .gp for its script")
       ->check(wrongPlotFile)->type_name("FILE")->group(output);
   c->add_option("--map", map,
-                "PNG of a row's error, of the first scene: white where it is right, red where too bright, blue where too dark, full at 0.25")
+                kMapHelp)
       ->expected(2)->type_name("ROW FILE")->group(output);
   c->add_flag("--quiet", quiet, "no progress bar")->group(output);
   c->callback([this, &status] { status = guarded([this] { return run(); }); });
@@ -153,17 +144,15 @@ engine::Result<ParetoScene> ParetoBenchmark::measure(const std::string& file, Pr
   if (const auto done = rayBench.renderer.render(*scene, settings, rayBench.frame); !done) return done.error();
   const engine::Frame& frame = rayBench.frame;
   out.width = frame.width, out.height = frame.height;
-  raster::Plane<uint8_t> seen(frame.width, frame.height);
-  bool any = false;
-  for (int y = 0; y < frame.height; ++y)
-    for (int x = 0; x < frame.width; ++x) any |= (seen.at(x, y) = frame.g.instance.at(x, y) != raster::kNoTriangle);
-  if (!any) return engine::Error{engine::ErrorCode::BadInput, "nothing is visible from this camera", file, ""};
+  const auto visible = seenOf(frame, file);
+  if (!visible) return visible.error();
+  const raster::Plane<uint8_t>& seen = *visible;
 
   const auto found = truthOfFrame(*scene, *resolved, frame, truth, progress);
   if (!found) return found.error();
   out.truthKey = found->key;
-  out.truthError[0] = rmsOver(found->truth.error[size_t(resolved->frame.transfer.membership)], seen);
-  out.truthError[1] = rmsOver(found->truth.error[size_t(TruthQuantity::TransferG)], seen);
+  out.truthError[0] = rmsOver({&found->truth.error[size_t(resolved->frame.transfer.membership)]}, seen);
+  out.truthError[1] = rmsOver({&found->truth.error[size_t(TruthQuantity::TransferG)]}, seen);
 
   progress.step("measuring");
   raster::Parallel parallel(resolved->raster.threads);
@@ -198,9 +187,7 @@ engine::Result<ParetoScene> ParetoBenchmark::measure(const std::string& file, Pr
       const ErrorMeter meter(truthPlanesOf(row, found->truth), seen, parallel);
       row.error = meter.measure(result);
       if (map.size() == 2 && file == scenes[0] && std::to_string(i + 1) == map[0]) {
-        const auto png = engine::encodeImage(engine::FileFormat::Png, {{"color", {"R", "G", "B"}, meter.map(result, kMapScale)}}, map[1]);
-        if (!png) return engine::Error{engine::ErrorCode::CannotWrite, png.error().message, map[1], ""};
-        if (const auto done = engine::writeFileAtomically(map[1], {png->data(), png->size()}); !done) return done.error();
+        if (const auto done = writeErrorMap(map[1], meter.map(result, kMapScale)); !done) return done.error();
       }
     }
   markFront(out.rows);
@@ -209,12 +196,8 @@ engine::Result<ParetoScene> ParetoBenchmark::measure(const std::string& file, Pr
 
 int ParetoBenchmark::run() {
   endCleanlyOnSignals();
-  if (map.size() == 2) {
-    const size_t rows = rowsOf(sweep, {}).size();
-    const bool number = !map[0].empty() && map[0].find_first_not_of("0123456789") == map[0].npos && map[0].size() < 8;
-    if (!number || std::stoul(map[0]) < 1 || std::stoul(map[0]) > rows)
-      return fail({engine::ErrorCode::Usage, "--map: \"" + map[0] + "\" is no row; there are 1 to " + std::to_string(rows), "", ""});
-  }
+  if (map.size() == 2)
+    if (const auto row = mapRow(map[0], rowsOf(sweep, {}).size()); !row) return fail(row.error());
   Progress progress(4 * int(scenes.size()), quiet);
   std::vector<ParetoScene> all;
   for (const std::string& file : scenes) {
@@ -223,11 +206,8 @@ int ParetoBenchmark::run() {
     all.push_back(std::move(*scene));
   }
   progress.finish();
-  if (!csv.empty()) {
-    const std::string text = csvOf(all);
-    if (const auto done = engine::writeFileAtomically(csv, {reinterpret_cast<const uint8_t*>(text.data()), text.size()}); !done)
-      return fail(done.error());
-  }
+  if (!csv.empty())
+    if (const auto done = writeText(csv, csvOf(all)); !done) return fail(done.error());
   if (!plot.empty())
     if (const auto done = writeParetoPlot(plot, all); !done) return fail(done.error());
   std::string text = json ? jsonOf(all) : "";

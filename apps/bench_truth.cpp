@@ -31,7 +31,7 @@ void TruthBenchmark::addTo(CLI::App& app, int& status) {
   command->add_option("-o,--output", outputs, "file to write, repeatable: .exr (all planes as layers), .npy or .pfm (STEM.PLANE.EXT)")
       ->type_name("FILE")
       ->allow_extra_args(false);
-  command->add_option("--plane", planes, "what to write: classic, linear, sqrt, exponential, tangent_sphere, ball, horizon, transfer or all")
+  command->add_option("--plane", planes, "what to write: classic, linear, sqrt, exponential, tangent_sphere, ball, horizon, transfer, bounce or all")
       ->delimiter(',')
       ->type_name("NAME,...")
       ->capture_default_str();

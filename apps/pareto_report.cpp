@@ -1,31 +1,10 @@
-#include <cstdarg>
-#include <cstdio>
-
 #include <nlohmann/json.hpp>
 
 #include "obscura/apps/bench_measure.h"
+#include "obscura/apps/error_output.h"
 #include "obscura/apps/pareto_report.h"
 
 namespace obscura::apps {
-namespace {
-
-std::string formatted(const char* format, ...) {
-  char text[512];
-  va_list values;
-  va_start(values, format);
-  std::vsnprintf(text, sizeof text, format, values);
-  va_end(values);
-  return text;
-}
-
-std::string quoted(const std::string& text) {  // for CSV
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-  return out + "\"";
-}
-
-}  // namespace
-
 std::string tableOf(const ParetoScene& s) {
   std::string out = s.file + formatted(", %dx%d, R = %g, %s, threads: %s; medians of %d frames\n", s.width, s.height, s.radius,
                                        s.target.c_str(), s.threads.c_str(), s.frames);

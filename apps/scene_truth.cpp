@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdio>
 
 #include "obscura/apps/cache_folder.h"
@@ -41,12 +42,13 @@ void removeEstimatorOptions(CLI::App& app, FrameOptions& options, const std::vec
 }
 
 engine::Result<TracedFrame> renderTraced(const std::string& file, const FrameOptions& options, const std::vector<engine::Aov>& more,
-                                         Progress& progress) {
+                                         Progress& progress, const std::function<void(engine::Scene&)>& change) {
   progress.step("loading");
   engine::LoadOptions load;
   load.scene = options.scene;
   auto scene = engine::sceneFromGltf(file, load);
   if (!scene) return scene.error();
+  if (change) change(*scene);
   auto resolved = options.resolve(*scene);
   if (!resolved) return resolved.error();
   TracedFrame out{std::move(*scene), std::move(*resolved), {}};
@@ -55,10 +57,26 @@ engine::Result<TracedFrame> renderTraced(const std::string& file, const FrameOpt
   out.resolved.frame.aovs = truthAovs();
   out.resolved.frame.aovs.insert(out.resolved.frame.aovs.end(), more.begin(), more.end());
   if (const auto done = engine::Renderer(out.resolved.raster).render(out.scene, out.resolved.frame, out.frame); !done) return done.error();
-  const raster::Plane<uint32_t>& instance = out.frame.g.instance;
-  for (int y = 0; y < out.frame.height; ++y)
-    if (std::any_of(instance.row(y), instance.row(y) + out.frame.width, [](uint32_t id) { return id != raster::kNoTriangle; })) return out;
-  return engine::Error{engine::ErrorCode::BadInput, "nothing is visible from this camera", file, ""};
+  if (const auto seen = seenOf(out.frame, file); !seen) return seen.error();
+  return out;
+}
+
+engine::Result<raster::Plane<uint8_t>> seenOf(const engine::Frame& frame, const std::string& file) {
+  raster::Plane<uint8_t> seen(frame.width, frame.height);
+  bool any = false;
+  for (int y = 0; y < frame.height; ++y)
+    for (int x = 0; x < frame.width; ++x) any |= (seen.at(x, y) = frame.g.instance.at(x, y) != raster::kNoTriangle);
+  if (!any) return engine::Error{engine::ErrorCode::BadInput, "nothing is visible from this camera", file, ""};
+  return seen;
+}
+
+double rmsOver(const PlaneRefs& planes, const raster::Plane<uint8_t>& seen) {
+  double sum = 0, n = 0;
+  for (const raster::Plane<float>* plane : planes)
+    for (int y = 0; y < seen.height(); ++y)
+      for (int x = 0; x < seen.width(); ++x)
+        if (seen.at(x, y)) sum += double(plane->at(x, y)) * plane->at(x, y), ++n;
+  return std::sqrt(sum / std::max(n, 1.0));
 }
 
 engine::Result<SceneTruth> truthOfFrame(const engine::Scene& scene, const ResolvedFrame& resolved, const engine::Frame& frame,

@@ -2,12 +2,14 @@
 // Out: its truth, from the cache or traced; the options of the programs that want one.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
+#include "obscura/apps/error_measures.h"
 #include "obscura/apps/frame_options.h"
 #include "obscura/apps/progress.h"
 #include "obscura/apps/truth.h"
@@ -33,9 +35,15 @@ struct TracedFrame {
   engine::Frame frame;  // with truthAovs() and those asked for
 };
 
-// Loads and renders. Usage, BadInput: also where nothing is visible.
+// Loads and renders; `change` is made to the scene before. Usage, BadInput: also where nothing is visible.
 engine::Result<TracedFrame> renderTraced(const std::string& file, const FrameOptions& options, const std::vector<engine::Aov>& more,
-                                         Progress& progress);
+                                         Progress& progress, const std::function<void(engine::Scene&)>& change = {});
+
+// 1 where something is seen. BadInput, of this file: nowhere.
+engine::Result<raster::Plane<uint8_t>> seenOf(const engine::Frame& frame, const std::string& file);
+
+// Root of the mean square of the planes over these pixels: a truth's standard error.
+double rmsOver(const PlaneRefs& planes, const raster::Plane<uint8_t>& seen);
 
 struct SceneTruth {
   Truth truth;

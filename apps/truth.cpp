@@ -112,6 +112,7 @@ class Tracer {
     addLight(p.light * open, sums);
     if (hit(i)) p.at = startAtHit(surface_, batch_.point(i), p.direction);
     p.light *= (1 - open) * glm::dvec3(p.at.albedo);
+    for (int c = 0; c < 3 && first; ++c) sums[int(TruthQuantity::BounceR) + c] += p.light[c];
     alive_[i] = (hit(i) || below(i)) && open < 1 && std::max({p.light.x, p.light.y, p.light.z}) > 0;
   }
 
@@ -169,7 +170,7 @@ Truth traceTruth(const RaySurface& surface, const RayScene& rays, const TruthSta
       for (int x = 0; x < width; ++x)
         if (starts.seen(x, y)) tracePixel(tracer, starts.at(x, y), starts.seed(x, y), settings, x, y, out);
         else
-          for (int q = 0; q < kTruthQuantities; ++q) out.value[q].at(x, y) = 1, out.error[q].at(x, y) = 0;
+          for (int q = 0; q < kTruthQuantities; ++q) out.value[q].at(x, y) = q < int(TruthQuantity::BounceR), out.error[q].at(x, y) = 0;
     done(int(end - begin));
   });
   return out;

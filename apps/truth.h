@@ -28,11 +28,13 @@ enum class TruthQuantity : uint8_t {
   TangentSphere,                       // what of the sphere of radius R/2 that touches the surface is in sight of the point
   Ball,                                // what of the half ball of radius R over the surface is in sight of the point
   Horizon,                             // mean of min(d / R, 1)^2 over the half sphere, without the cosine
-  TransferR, TransferG, TransferB      // W, equation 4, with the albedo at each hit
+  TransferR, TransferG, TransferB,     // W, equation 4, with the albedo at each hit
+  BounceR, BounceG, BounceB            // B = (1 / pi) int (1 - mu) a(y) cos, y what is hit first (long paper, equation 6)
 };
-constexpr int kTruthQuantities = 10;
+constexpr int kTruthQuantities = 13;
 
-// One plane per quantity: the mean of the scrambles and its standard error. Empty pixels hold 1 and 0.
+// One plane per quantity: the mean of the scrambles and its standard error. Empty pixels hold what open ones do:
+// 1, of B 0; and no error.
 struct Truth {
   raster::Plane<float> value[kTruthQuantities], error[kTruthQuantities];
 

@@ -11,7 +11,7 @@
 namespace obscura::apps {
 namespace {
 
-constexpr char kVersion[] = "obscura truth 3";  // counts up when the method's values change
+constexpr char kVersion[] = "obscura truth 4";  // counts up when the method's values change
 
 class Hash {
  public:

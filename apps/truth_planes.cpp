@@ -31,7 +31,8 @@ const std::vector<TruthPlane>& truthPlanes() {
                                                  {"tangent_sphere", {Q::TangentSphere}},
                                                  {"ball", {Q::Ball}},
                                                  {"horizon", {Q::Horizon}},
-                                                 {"transfer", {Q::TransferR, Q::TransferG, Q::TransferB}}};
+                                                 {"transfer", {Q::TransferR, Q::TransferG, Q::TransferB}},
+                                                 {"bounce", {Q::BounceR, Q::BounceG, Q::BounceB}}};
   return planes;
 }
 
