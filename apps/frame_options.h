@@ -25,6 +25,9 @@ struct ResolvedFrame {
   bool reference = false;
 };
 
+// Extended: see engine::extendedAmbient, engine::extendedEnvironment.
+enum class AmbientKind : uint8_t { Constant, Extended, Environment };
+
 struct EnvironmentOptions {
   std::string file;  // empty: none
   engine::EnvironmentProjection projection = engine::EnvironmentProjection::Latlong;
@@ -53,7 +56,7 @@ struct FrameOptions {
   engine::CameraRequest camera;
   glm::vec3 background{0};                // linear
   std::optional<glm::vec3> ambientLight;  // alike; empty: 1, or what engine::extendedAmbient() chooses
-  bool ambientExtended = false;           // see engine::extendedAmbient
+  std::optional<AmbientKind> ambientKind;  // empty: Environment if there is one, else Constant
   std::optional<int> ambientClasses;      // of that; empty: 6
   std::optional<std::array<glm::vec3, 6>> ambientDirections;   // see engine::cubeOf
   std::vector<std::pair<std::string, glm::vec3>> ambientNodes;  // as in engine::LoadOptions

@@ -35,8 +35,10 @@ void addAmbientLight(CLI::App& app, FrameOptions& o) {
     for (const std::string& text : texts) {
       const std::optional<glm::vec3> color = colorOf(text);
       if (color) o.ambientLight = color;
-      else if (text == "extended" || text == "constant") o.ambientExtended = text == "extended";
-      else throw CLI::ValidationError("--ambient-light", "\"" + text + "\" is not R,G,B, #RRGGBB, constant or extended");
+      else if (text == "constant") o.ambientKind = AmbientKind::Constant;
+      else if (text == "extended") o.ambientKind = AmbientKind::Extended;
+      else if (text == "environment") o.ambientKind = AmbientKind::Environment;
+      else throw CLI::ValidationError("--ambient-light", "\"" + text + "\" is not R,G,B, #RRGGBB, constant, extended or environment");
       if (++(color ? colors : kinds) > 1)
         throw CLI::ValidationError("--ambient-light", "\"" + text + "\" is the second of its kind");
     }
@@ -44,8 +46,9 @@ void addAmbientLight(CLI::App& app, FrameOptions& o) {
   app.add_option_function<std::vector<std::string>>(
          "--ambient-light", read,
          "R,G,B|#RRGGBB: the light that comes from everywhere, linear or sRGB [1,1,1; extended: what the scene emits; where "
-         "nothing does, as much that it is 1 on average]. extended: and what the scene's surfaces send each other, by the direction of normals. Both may be given")
-      ->type_name("COLOR|constant|extended")
+         "nothing does, as much that it is 1 on average]. environment: that of --environment FILE, which is so with that option anyway. extended: that "
+         "light, and what the scene's surfaces send each other, by the direction of normals. A colour and one of the words may be given")
+      ->type_name("COLOR|constant|extended|environment")
       ->allow_extra_args(false)
       ->group("View");
 }
@@ -81,9 +84,8 @@ void addEnvironment(CLI::App& app, FrameOptions& o) {
   const char* group = "Environment";
   EnvironmentOptions& e = o.environment;
   CLI::Option* file = app.add_option("--environment", e.file,
-                                     "light from a map, any image, in place of --ambient-light: .hdr, .exr, .png, ... [none]")
+                                     "ambient light from a map, any image, in place of a colour of --ambient-light: .hdr, .exr, .png, ... [none]")
                           ->type_name("FILE")
-                          ->excludes("--ambient-light")
                           ->group(group);
   addChoice(app, "--env-projection", kProjectionNames, e.projection, "of the map: how directions lie in it")->needs(file)->group(group);
   const auto inRange = [](double least, double most, double& value) {
@@ -152,11 +154,34 @@ void addLight(CLI::App& app, FrameOptions& o) {
 void checkLight(const FrameOptions& o) {
   if (o.environment.background && o.environment.file.empty())
     throw CLI::ValidationError("--background", "environment needs --environment FILE");
-  if (o.ambientClasses && !o.ambientExtended) throw CLI::ValidationError("--ambient-classes", "these are of --ambient-light extended: add that");
-  if (o.ambientExtended && (o.ambientDirections || !o.environment.file.empty()))
-    throw CLI::ValidationError("--ambient-light", std::string("extended and ") + (o.ambientDirections ? "--ambient-directional" : "--environment") +
-                                                      " cannot be had at once: both say what comes from where");
+  if (o.ambientKind == AmbientKind::Environment && o.environment.file.empty())
+    throw CLI::ValidationError("--ambient-light", "environment is the light of a map: name its file, --environment FILE");
+  if (o.ambientKind == AmbientKind::Constant && !o.environment.file.empty())
+    throw CLI::ValidationError("--ambient-light", "constant and --environment cannot be had at once: say environment or extended, or leave one out");
+  if (o.ambientClasses && o.ambientKind != AmbientKind::Extended) throw CLI::ValidationError("--ambient-classes", "these are of --ambient-light extended: add that");
+  if (!o.environment.file.empty() && o.ambientLight)
+    throw CLI::ValidationError("--ambient-light", "a colour and --environment cannot be had at once: each is all the light that comes from outside");
 }
+
+namespace {
+
+// The light that the scene's surfaces send each other, besides the ambient light that `frame` has.
+engine::Result<engine::Done> extend(const FrameOptions& o, const engine::Scene& scene, engine::FrameSettings& frame) {
+  std::vector<engine::SceneLight> lights = o.light.ofFile ? scene.lights : std::vector<engine::SceneLight>();
+  lights.insert(lights.end(), frame.lights.begin(), frame.lights.end());
+  const engine::BouncedLight direct(scene, lights, o.light.shadows, o.raster);
+  const int classes = o.ambientClasses.value_or(6);
+  raster::Parallel parallel(o.raster.threads);
+  auto directions = frame.environment
+                        ? engine::extendedEnvironment(scene, {*frame.environment, frame.environmentRotation, frame.environmentIntensity}, o.raster, &direct, classes, frame.ambientDirections)
+                        : engine::extendedAmbient(scene, o.ambientLight ? std::optional<glm::dvec3>(*o.ambientLight) : std::nullopt, parallel, &direct, classes, frame.ambientDirections);
+  if (!directions) return directions.error();
+  frame.ambientLight = glm::vec3(1);
+  frame.ambientDirections = std::move(*directions);
+  return engine::Done{};
+}
+
+}  // namespace
 
 engine::Result<engine::Done> resolveLight(const FrameOptions& o, const engine::Scene& scene, engine::FrameSettings& frame) {
   frame.ambientLight = o.ambientLight.value_or(glm::vec3(1));
@@ -167,16 +192,6 @@ engine::Result<engine::Done> resolveLight(const FrameOptions& o, const engine::S
   if (o.light.sun) frame.lights.push_back(farLight("sun", -*o.light.sun, o.light.sunColor, true));
   if (o.light.headlight > 0)
     frame.lights.push_back(farLight("headlight", -glm::transpose(glm::dmat3(frame.camera.viewFromWorld))[2], glm::vec3(float(o.light.headlight)), false));
-  if (o.ambientExtended) {
-    raster::Parallel parallel(o.raster.threads);
-    std::vector<engine::SceneLight> lights = o.light.ofFile ? scene.lights : std::vector<engine::SceneLight>();
-    lights.insert(lights.end(), frame.lights.begin(), frame.lights.end());
-    const engine::BouncedLight direct(scene, lights, o.light.shadows, o.raster);
-    auto colors = engine::extendedAmbient(scene, o.ambientLight ? std::optional<glm::dvec3>(*o.ambientLight) : std::nullopt, parallel, &direct, o.ambientClasses.value_or(6));
-    if (!colors) return colors.error();
-    frame.ambientLight = glm::vec3(1);
-    frame.ambientDirections = std::move(*colors);
-  }
   if (!o.environment.file.empty()) {
     engine::Result<engine::Environment> read =
         engine::readEnvironment(o.environment.file, o.environment.projection,
@@ -191,7 +206,7 @@ engine::Result<engine::Done> resolveLight(const FrameOptions& o, const engine::S
     frame.environmentIntensity = o.environment.intensity;
     frame.environmentBackground = o.environment.background;
   }
-  return engine::Done{};
+  return o.ambientKind == AmbientKind::Extended ? extend(o, scene, frame) : engine::Done{};
 }
 
 }  // namespace obscura::apps

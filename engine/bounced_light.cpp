@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "obscura/engine/draw_list.h"
 #include "obscura/engine/shadow_maps.h"
 #include "obscura/raster/float_environment.h"
 
@@ -29,31 +28,27 @@ post::LightBounds boundsOf(const Bounds& scene, const post::PunctualLight& light
 
 }  // namespace
 
-BouncedLight::BouncedLight(const Scene& scene, raster::Span<const SceneLight> lights, bool shadows, const raster::Settings& settings) {
+SceneShadows::SceneShadows(const Scene& scene, const raster::Settings& settings)
+    : bounds_(scene.bounds), casters_(castersOf(draws_.of(scene, false), materials_)), rasterizer_(settings) {}
+
+post::PunctualLight SceneShadows::of(const SceneLight& light, int size, std::vector<raster::Plane<float>>& maps) {
   const raster::FloatEnvironment environment;
   const raster::Camera world;  // camera space is the world
+  LightViews views = viewsOf(light, world, bounds_, size);
+  if (light.kind == post::LightKind::Directional && views.light.maps > 0)
+    fitted(light, world, bounds_, size, boundsOf(bounds_, views.light), views);
+  maps.resize(views.cameras.size());
+  for (size_t k = 0; k < maps.size(); ++k) {
+    rasterizer_.renderDepth(casters_, views.cameras[k], size, size, maps[k]);
+    views.light.map[k].depth = &maps[k];
+  }
+  return views.light;
+}
+
+BouncedLight::BouncedLight(const Scene& scene, raster::Span<const SceneLight> lights, bool shadows, const raster::Settings& settings) {
   const int size = sizeFor(lights);
-  SceneDraws draws;
-  std::vector<raster::Material> materials;
-  const raster::DrawList casters = castersOf(draws.of(scene, false), materials);
-  raster::Rasterizer rasterizer(settings);
-  size_t count = 0;
-  std::vector<LightViews> views;
-  for (const SceneLight& light : lights) {
-    views.push_back(viewsOf(light, world, scene.bounds, shadows && light.shadows ? size : 0));
-    if (light.kind == post::LightKind::Directional && views.back().light.maps > 0)
-      fitted(light, world, scene.bounds, size, boundsOf(scene.bounds, views.back().light), views.back());
-    count += views.back().cameras.size();
-  }
-  maps_.resize(count);
-  size_t next = 0;
-  for (LightViews& v : views) {
-    for (size_t k = 0; k < v.cameras.size(); ++k) {
-      rasterizer.renderDepth(casters, v.cameras[k], size, size, maps_[next]);
-      v.light.map[k].depth = &maps_[next++];
-    }
-    lights_.push_back(v.light);
-  }
+  SceneShadows all(scene, settings);
+  for (const SceneLight& light : lights) lights_.push_back(all.of(light, shadows && light.shadows ? size : 0, maps_.emplace_back()));
 }
 
 glm::dvec3 BouncedLight::at(const glm::dvec3& point, const glm::dvec3& normal) const {

@@ -7,10 +7,14 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "obscura/engine/ambient_light.h"
+#include "obscura/engine/outside_light.h"
 #include "obscura/raster/srgb.h"
 
 namespace obscura::engine {
 namespace {
+
+using glm::dvec3;
 
 constexpr double kMostReflectance = 0.99;
 constexpr size_t kTrianglesPerTask = 4096;  // fixes the order of the sums
@@ -146,54 +150,128 @@ std::vector<AmbientClass> ambientClasses(const Scene& scene, const std::vector<g
   return all;
 }
 
-std::vector<glm::vec3> incomingLight(const std::vector<AmbientClass>& classes, const glm::dvec3& light) {
+namespace {
+
+// What a class sees besides what is its own.
+struct View {
+  dvec3 outside{0};   // what arrives of the light from outside
+  double closed = 1;  // the part of its view that shows surfaces
+  double others = 0;  // by how many classes that is shared, each alike
+  double formFactor() const { return others > 0 ? closed / others : 0; }  // F_kj of each of them
+};
+
+// Without knowledge of what is open: all is closed, but for the part of classes without area.
+std::vector<View> viewsOf(const std::vector<AmbientClass>& classes, const std::vector<dvec3>& outside) {
+  std::vector<View> views;
+  for (const dvec3& light : outside) views.push_back({light, 1, double(classes.size() - 1)});
+  return views;
+}
+
+// B_k.
+std::vector<dvec3> sentLight(const std::vector<AmbientClass>& classes, const std::vector<View>& views) {
   const size_t count = classes.size();
-  const double formFactor = count > 1 ? 1.0 / double(count - 1) : 0;
-  std::vector<glm::vec3> incoming(count);
+  std::vector<dvec3> sent(count);
   for (int c = 0; c < 3; ++c) {
-    // (I - diag(rho) F) B = U / A + rho light: rows of the matrix and the right side, by elimination. The diagonal is larger
-    // than the rest of its row, as rho < 1, so that no row has to be exchanged.
+    // (I - diag(rho) F) B = U / A + rho outside: rows of the matrix and the right side, by elimination. The diagonal is larger
+    // than the rest of its row, as rho closed < 1, so that no row has to be exchanged.
     std::vector<std::vector<double>> rows(count, std::vector<double>(count + 1, 0.0));
     for (size_t k = 0; k < count; ++k) {
-      const double area = classes[k].area;
-      const double rho = area > 0 ? std::min(classes[k].reflected[c] / area, kMostReflectance) : 0;
-      for (size_t j = 0; j < count; ++j) rows[k][j] = j == k ? 1 : -rho * formFactor;
-      rows[k][count] = (area > 0 ? classes[k].emitted[c] / area : 0) + rho * light[c];
+      const double area = classes[k].area, most = std::min(1.0, kMostReflectance / views[k].closed);
+      const double rho = area > 0 ? std::min(classes[k].reflected[c] / area, most) : 0;
+      for (size_t j = 0; j < count; ++j) rows[k][j] = j == k ? 1 : -rho * views[k].formFactor();
+      rows[k][count] = (area > 0 ? classes[k].emitted[c] / area : 0) + rho * views[k].outside[c];
     }
     for (size_t k = 0; k < count; ++k)
       for (size_t i = k + 1; i < count; ++i) {
         const double by = rows[i][k] / rows[k][k];
         for (size_t j = k; j <= count; ++j) rows[i][j] -= by * rows[k][j];
       }
-    std::vector<double> sent(count);
     for (size_t k = count; k-- > 0;) {
       double rest = rows[k][count];
-      for (size_t j = k + 1; j < count; ++j) rest -= rows[k][j] * sent[j];
-      sent[k] = rest / rows[k][k];
-    }
-    for (size_t k = 0; k < count; ++k) {
-      double sum = light[c];
-      for (size_t j = 0; j < count; ++j)
-        if (j != k) sum += sent[j] * formFactor;
-      incoming[k][c] = float(sum);
+      for (size_t j = k + 1; j < count; ++j) rest -= rows[k][j] * sent[j][c];
+      sent[k][c] = rest / rows[k][k];
     }
   }
+  return sent;
+}
+
+// `light` and what arrives of the other classes.
+dvec3 withReceived(dvec3 light, size_t k, const std::vector<dvec3>& sent, const View& view) {
+  for (size_t j = 0; j < sent.size(); ++j)
+    if (j != k) light += sent[j] * view.formFactor();
+  return light;
+}
+
+std::vector<glm::vec3> incomingLight(const std::vector<AmbientClass>& classes, const std::vector<dvec3>& outside) {
+  const std::vector<View> views = viewsOf(classes, outside);
+  const std::vector<dvec3> sent = sentLight(classes, views);
+  std::vector<glm::vec3> incoming;
+  for (size_t k = 0; k < classes.size(); ++k) incoming.push_back(glm::vec3(withReceived(outside[k], k, sent, views[k])));
   return incoming;
 }
 
-Result<std::vector<post::AmbientDirection>> extendedAmbient(const Scene& scene, const std::optional<glm::dvec3>& light, raster::Parallel& parallel,
-                                                            const BouncedLight* direct, int count) {
+// D(n) of post::AmbientLight.
+dvec3 factorAt(const std::vector<post::AmbientDirection>& factors, const dvec3& n) {
+  dvec3 sum(0);
+  double weights = 0;
+  for (const post::AmbientDirection& f : factors) {
+    const double weight = std::max(0.0, glm::dot(n, dvec3(f.direction)));
+    sum += weight * dvec3(f.color), weights += weight;
+  }
+  return weights > 0 ? sum / weights : dvec3(1);
+}
+
+bool isLight(const glm::vec3& v) { return v.x >= 0 && v.y >= 0 && v.z >= 0 && std::max({v.x, v.y, v.z}) < 1e30f; }
+const Error kTooBright{ErrorCode::BadInput, "the scene emits more light than floats hold", "", ""};
+
+}  // namespace
+
+std::vector<glm::vec3> incomingLight(const std::vector<AmbientClass>& classes, const dvec3& light) {
+  return incomingLight(classes, std::vector<dvec3>(classes.size(), light));
+}
+
+Result<std::vector<post::AmbientDirection>> extendedAmbient(const Scene& scene, const std::optional<dvec3>& light, raster::Parallel& parallel,
+                                                            const BouncedLight* direct, int count, const std::vector<post::AmbientDirection>& factors) {
   const std::vector<AmbientClass> classes = ambientClasses(scene, spreadDirections(count), parallel, direct);
   const bool dark = std::none_of(classes.begin(), classes.end(), [](const AmbientClass& k) { return k.emitted.x + k.emitted.y + k.emitted.z > 0; });
-  const std::vector<glm::vec3> in = incomingLight(classes, light.value_or(glm::dvec3(dark ? 1 : 0)));
-  float mean = 0;
-  for (const glm::vec3& k : in) mean += (k.x + k.y + k.z) / float(3 * count);
+  std::vector<dvec3> outside;
+  float asked = 0, mean = 0;  // of factors, and of light for them
+  for (const AmbientClass& k : classes) {
+    const dvec3 factor = factorAt(factors, k.direction);
+    asked += float(factor.x + factor.y + factor.z);
+    outside.push_back(factor * light.value_or(dvec3(dark ? 1 : 0)));
+  }
+  const std::vector<glm::vec3> in = incomingLight(classes, outside);
+  for (const glm::vec3& k : in) mean += (k.x + k.y + k.z) / asked;
+  const bool scaled = dark && !light && asked > 0;
   std::vector<post::AmbientDirection> out;
   for (size_t k = 0; k < classes.size(); ++k) {
-    const glm::vec3 color = dark && !light ? in[k] / mean : in[k];
-    for (int c = 0; c < 3; ++c)
-      if (!(color[c] >= 0 && color[c] < 1e30f)) return Error{ErrorCode::BadInput, "the scene emits more light than floats hold", "", ""};
-    out.push_back({glm::vec3(classes[k].direction), color});
+    out.push_back({glm::vec3(classes[k].direction), scaled ? in[k] / mean : in[k]});
+    if (!isLight(out.back().color)) return kTooBright;
+  }
+  return out;
+}
+
+Result<std::vector<post::AmbientDirection>> extendedEnvironment(const Scene& scene, const EnvironmentLight& light, const raster::Settings& settings,
+                                                                const BouncedLight* direct, int count, const std::vector<post::AmbientDirection>& factors) {
+  raster::Parallel parallel(settings.threads);
+  const std::vector<dvec3> directions = spreadDirections(count);
+  const std::vector<AmbientClass> classes = ambientClasses(scene, directions, parallel, direct);
+  const glm::dmat3 worldFromMap = viewFromEnvironment({}, light.rotation), mapFromWorld = glm::transpose(worldFromMap);
+  const std::vector<OutsidePart> parts = outsideParts(scene, directions, light.environment.harmonics, worldFromMap, settings);
+  const double withArea = double(std::count_if(classes.begin(), classes.end(), [](const AmbientClass& k) { return k.area > 0; }));
+  std::vector<post::AmbientDirection> out;
+  std::vector<View> views;
+  for (size_t k = 0; k < classes.size(); ++k) {
+    const dvec3 factor = parts[k].passed * factorAt(factors, directions[k]);
+    const dvec3 sent = glm::max(irradiance(light.environment.harmonics, mapFromWorld * directions[k]), 0.0) * (light.intensity / 3.141592653589793);
+    views.push_back({factor * sent, 1 - parts[k].open, classes[k].area > 0 ? withArea - 1 : withArea});
+    out.push_back({glm::vec3(directions[k]), glm::vec3(factor)});
+  }
+  const std::vector<dvec3> sent = sentLight(classes, views);
+  for (size_t k = 0; k < classes.size(); ++k) {
+    out[k].added = glm::vec3(withReceived(dvec3(0), k, sent, views[k]));
+    if (!isLight(out[k].added)) return kTooBright;
   }
   return out;
 }

@@ -9,6 +9,7 @@
 
 #include "obscura/engine/ambient_directions.h"
 #include "obscura/engine/bounced_light.h"
+#include "obscura/engine/environment.h"
 #include "obscura/engine/result.h"
 #include "obscura/engine/scene.h"
 #include "obscura/raster/parallel.h"
@@ -41,8 +42,24 @@ std::vector<glm::vec3> incomingLight(const std::vector<AmbientClass>& classes, c
 // More of them make it less: a class gets nothing of itself alone, and what that is becomes ever less. Without a light
 // there is that of the scene's emitters and of `direct` lights alone; where nothing emits, white light from everywhere, such that its mean over
 // classes and channels is 1 with all reflections: as bright as the constant term, as in an open scene reflections would
-// only add to a light that is not there. BadInput: a light beyond what floats hold.
+// only add to a light that is not there. Factors by direction, on that light: those along the classes' own directions; without a
+// light the mean is theirs. BadInput: a light beyond what floats hold.
 Result<std::vector<post::AmbientDirection>> extendedAmbient(const Scene& scene, const std::optional<glm::dvec3>& light, raster::Parallel& parallel,
-                                                            const BouncedLight* direct = nullptr, int classes = 6);
+                                                            const BouncedLight* direct = nullptr, int classes = 6,
+                                                            const std::vector<post::AmbientDirection>& factors = {});
+
+struct EnvironmentLight {
+  const Environment& environment;
+  double rotation = 0, intensity = 1;  // as in FrameSettings
+};
+
+// The same where an environment is the light from outside: FrameSettings::ambientDirections besides FrameSettings::environment.
+// What stands in its way is known here (outside_light.h): with the parts p_k of its light and o_k of a class's view that are open
+//   In_k = p_k E(f_k) / pi + Q_k,   Q_k = (1 - o_k) mean of B_j over the other classes that have an area
+// The result's colours are p_k (times the factors along f_k) and it adds Q_k, so that La(n) = p(n) E(n) / pi + Q(n), see docs/lighting.md.
+// rho_k (1 - o_k) is clamped to 0.99.
+Result<std::vector<post::AmbientDirection>> extendedEnvironment(const Scene& scene, const EnvironmentLight& light, const raster::Settings& settings,
+                                                                const BouncedLight* direct = nullptr, int classes = 6,
+                                                                const std::vector<post::AmbientDirection>& factors = {});
 
 }  // namespace obscura::engine

@@ -17,9 +17,12 @@ constexpr double kY0 = 0.28209479177387814, kY1 = 0.4886025119029199, kY2 = 1.09
                  kY22 = 0.5462742152960396;
 constexpr double kC1 = kPi / 4 * kY22, kC2 = kPi / 3 * kY1, kC3 = 3 * kPi / 4 * kY20, kC4 = kPi * kY0, kC5 = kPi / 4 * kY20;
 
+std::array<double, 9> basisAt(const glm::dvec3& d) {
+  return {kY0, kY1 * d.y, kY1 * d.z, kY1 * d.x, kY2 * d.x * d.y, kY2 * d.y * d.z, kY20 * (3 * d.z * d.z - 1), kY2 * d.x * d.z, kY22 * (d.x * d.x - d.y * d.y)};
+}
+
 void addTexel(const glm::dvec3& radiance, const glm::dvec3& d, Harmonics& sum) {
-  const double basis[9] = {kY0, kY1 * d.y, kY1 * d.z, kY1 * d.x, kY2 * d.x * d.y, kY2 * d.y * d.z, kY20 * (3 * d.z * d.z - 1),
-                           kY2 * d.x * d.z, kY22 * (d.x * d.x - d.y * d.y)};
+  const std::array<double, 9> basis = basisAt(d);
   for (size_t k = 0; k < 9; ++k) sum[k] += basis[k] * radiance;
 }
 
@@ -46,6 +49,13 @@ Harmonics harmonicsOf(const EnvironmentMap& map, raster::Parallel& parallel) {
   Harmonics sum{};  // in the order of the rows
   for (const Harmonics& row : rows)
     for (size_t k = 0; k < 9; ++k) sum[k] += row[k];
+  return sum;
+}
+
+glm::dvec3 radianceOf(const Harmonics& l, const glm::dvec3& d) {
+  const std::array<double, 9> basis = basisAt(d);
+  glm::dvec3 sum(0);
+  for (size_t k = 0; k < 9; ++k) sum += basis[k] * l[k];
   return sum;
 }
 

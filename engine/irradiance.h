@@ -20,6 +20,10 @@ using Harmonics = std::array<glm::dvec3, 9>;
 // The integral over the sphere by texels and their solid angles: the same bits for any number of threads.
 Harmonics harmonicsOf(const EnvironmentMap& map, raster::Parallel& parallel);
 
+// The radiance from the unit direction d that the coefficients make up: a blurred one, and where the map is dark beside something
+// bright, a negative one.
+glm::dvec3 radianceOf(const Harmonics& l, const glm::dvec3& d);
+
 // E(n) of equation 13, not kept from being negative. It lacks what is beyond the second order: of light from a single
 // direction, the worst case, it errs by at most 9.4 % of the largest irradiance (where the light just grazes the surface),
 // and falls to -4.0 % of it behind; of skies by far less: see docs/lighting.md.

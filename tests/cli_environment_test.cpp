@@ -64,6 +64,15 @@ TEST_CASE("cli: every option of the environment changes the picture") {
     CHECK(pictures.insert(w.digest(words)).second);
   }
   CHECK(pictures.insert(w.digest({"--environment", w.square, "--env-projection", "sphere"})).second);
+  CHECK(w.digest({"--environment", w.sky, "--ambient-light", "environment"}) == w.digest({"--environment", w.sky}));
+  // With what surfaces send each other; the environment's rotation and factors reach that, too.
+  const Words six = {"--ambient-directional", "1,1,1/1,1,1/1,0,1/0,0,0/1,1,1/1,1,1"};
+  for (Words words : std::vector<Words>{{"--ambient-light", "extended", "--ambient-light", "0.5,0.5,0.4"}, {"--environment", w.sky, "--ambient-light", "extended"}, {"--environment", w.sky, "--ambient-light", "extended", "--env-rotate", "90"},
+                                        {"--environment", w.sky, "--ambient-light", "extended", "--ambient-classes", "9"}, {"--environment", w.sky, "--ambient-light", "extended", "--headlight", "3"}}) {
+    CHECK(pictures.insert(w.digest(words)).second);
+    words.insert(words.end(), six.begin(), six.end());
+    CHECK(pictures.insert(w.digest(words)).second);
+  }
   CHECK(w.digest({"--environment", w.sky, "--env-rotate", "30"}) == w.digest({"--environment", w.sky, "--env-rotate", "30", "--reference"}));
 }
 
@@ -75,6 +84,10 @@ TEST_CASE("cli: an environment that cannot be is one line and the documented exi
   w.failing(2, {"--digest", "--environment", w.sky, "--env-projection", "disc"}, "latlong|sphere|cube|paraboloid");
   w.failing(2, {"--digest", "--env-rotate", "3"}, "--environment");
   w.failing(2, {"--digest", "--environment", w.sky, "--ambient-light", "1,1,1"}, "--ambient-light");
+  w.failing(2, {"--digest", "--environment", w.sky, "--ambient-light", "1,1,1", "--ambient-light", "extended"}, "--ambient-light");
+  w.failing(2, {"--digest", "--environment", w.sky, "--ambient-light", "constant"}, "--ambient-light");
+  w.failing(2, {"--digest", "--ambient-light", "environment"}, "--environment FILE");
+  w.failing(2, {"--digest", "--environment", w.sky, "--ambient-light", "extended", "--ambient-light", "environment"}, "second of its kind");
   for (const char* value : {"-1", "nan", "1e7", "x", ""}) w.failing(2, {"--digest", "--environment", w.sky, "--env-intensity", value}, "--env-intensity");
   w.failing(2, {"--digest", "--background", "environment"}, "needs --environment");
   for (const char* value : {"65", "x", "nan"}) w.failing(2, {"--digest", "--exposure", value}, "--exposure");

@@ -56,10 +56,9 @@ TEST_CASE("cli: what the command line cannot mean ends with 2 and says why") {
   for (const Words& light : {Words{"--ambient-light", "bright"}, Words{"--ambient-light", "1,1"}, Words{"--ambient-light", "-1,0,0"}}) {
     Words words = {"--digest"};
     words.insert(words.end(), light.begin(), light.end());
-    w.failing(2, words, "is not R,G,B, #RRGGBB, constant or extended");
+    w.failing(2, words, "is not R,G,B, #RRGGBB, constant, extended or environment");
   }
   w.failing(2, {"--digest", "--ambient-light", "extended", "--ambient-light", "constant"}, "second of its kind");
-  w.failing(2, {"--digest", "--ambient-light", "extended", "--ambient-directional", "1,1,1/1,1,1/1,0,1/0,0,0/1,1,1/1,1,1"}, "cannot be had at once");
   w.failing(2, {"--digest", "--ambient-node", "nowhere=1,1,1"}, "no node of the scene is named \"nowhere\"");
   for (const char* six : {"1,1,1", "1,1,1/1,1,1/1,1,1/1,1,1/1,1,1", "1,1,1/1,1,1/1,1,1/1,1,1/1,1,1/1,1,-1", "#fff/#fff/#fff/#fff/#fff/#fff",
                           "1,1,1/1,1,1/1,1,1/1,1,1/1,1,1/1,1,1/1,1,1"})
