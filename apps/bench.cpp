@@ -7,6 +7,7 @@
 #include "obscura/apps/bench_albedo.h"
 #include "obscura/apps/bench_error.h"
 #include "obscura/apps/bench_frame.h"
+#include "obscura/apps/bench_irradiance.h"
 #include "obscura/apps/bench_pareto.h"
 #include "obscura/apps/bench_peers.h"
 #include "obscura/apps/bench_raster.h"
@@ -34,6 +35,8 @@ int main(int argc, char** argv) {
   pareto.addTo(app, status);
   obscura::apps::AlbedoBenchmark albedo;
   albedo.addTo(app, status);
+  obscura::apps::IrradianceBenchmark irradiance;
+  irradiance.addTo(app, status);
   obscura::apps::ErrorBenchmark error;
   error.addTo(app, status);
   obscura::apps::PeersBenchmark peers;

@@ -92,7 +92,7 @@ int AlbedoBenchmark::run() {
     if (!row) return fail(row.error());
     mapped = *row;
   }
-  Progress progress(int(5 * albedoPasses(list).size() * scenes.size()), quiet);
+  Progress progress(int(4 * albedoPasses(list).size() * scenes.size()), quiet);
   std::vector<AlbedoScene> all;
   for (size_t k = 0; k < scenes.size(); ++k) {
     engine::Result<AlbedoScene> scene = measure(scenes[k], list, k == 0 ? mapped : std::nullopt, progress);

@@ -34,10 +34,10 @@ void ErrorBenchmark::addTo(CLI::App& app, int& status) {
 
 int ErrorBenchmark::run() {
   endCleanlyOnSignals();
-  Progress progress(5, quiet);
+  Progress progress(4, quiet);
   auto traced = renderTraced(scene, options, {engine::Aov::Obscurance}, progress);
   if (!traced) return fail(traced.error());
-  auto& [loaded, resolved, frame] = *traced;
+  auto& [loaded, resolved, frame, environment] = *traced;
   const auto found = truthOfFrame(loaded, resolved, frame, truth, progress);
   if (!found) return fail(found.error());
   progress.step("taking it apart");

@@ -198,7 +198,7 @@ int ParetoBenchmark::run() {
   endCleanlyOnSignals();
   if (map.size() == 2)
     if (const auto row = mapRow(map[0], rowsOf(sweep, {}).size()); !row) return fail(row.error());
-  Progress progress(4 * int(scenes.size()), quiet);
+  Progress progress(3 * int(scenes.size()), quiet);
   std::vector<ParetoScene> all;
   for (const std::string& file : scenes) {
     engine::Result<ParetoScene> scene = measure(file, progress);

@@ -31,27 +31,30 @@ void TruthBenchmark::addTo(CLI::App& app, int& status) {
   command->add_option("-o,--output", outputs, "file to write, repeatable: .exr (all planes as layers), .npy or .pfm (STEM.PLANE.EXT)")
       ->type_name("FILE")
       ->allow_extra_args(false);
-  command->add_option("--plane", planes, "what to write: classic, linear, sqrt, exponential, tangent_sphere, ball, horizon, transfer, bounce or all")
+  command->add_option("--plane", planes, "what to write: classic, linear, sqrt, exponential, tangent_sphere, ball, horizon, transfer, bounce, with --environment also environment_open,"
+                                            " environment_shadowed, environment_obscured, environment_lit; or all")
       ->delimiter(',')
       ->type_name("NAME,...")
       ->capture_default_str();
   command->add_flag("--json", json, "one JSON object instead of a table");
   command->add_flag("--quiet", quiet, "no progress bar");
   options.addTo(*command);
-  removeEstimatorOptions(*command, options);
+  std::vector<std::string> kept = {"--radius", "--membership"};
+  kept.insert(kept.end(), kEnvironmentOptions.begin(), kEnvironmentOptions.end());
+  removeEstimatorOptions(*command, options, kept);
   truth.addTo(*command);
   command->callback([this, &status] { status = guarded([this] { return run(); }); });
 }
 
 int TruthBenchmark::run() {
   endCleanlyOnSignals();
-  const auto files = planTruthFiles(outputs, planes);
+  const auto files = planTruthFiles(outputs, planes, !options.environment.file.empty());
   if (!files) return fail(files.error());
-  Progress progress(4, quiet);
+  Progress progress(options.environment.file.empty() ? 3 : 4, quiet);
   const auto traced = renderTraced(scene, options, {}, progress);
   if (!traced) return fail(traced.error());
-  const auto& [loaded, resolved, frame] = *traced;
-  const auto found = truthOfFrame(loaded, resolved, frame, truth, progress);
+  const auto& [loaded, resolved, frame, environment] = *traced;
+  const auto found = truthOfFrame(loaded, resolved, frame, truth, progress, environment);
   if (!found) return fail(found.error());
   for (const TruthFile& file : *files)
     if (const auto done = writeTruthFile(file, found->truth, frame); !done) return fail(done.error());
@@ -71,21 +74,23 @@ void TruthBenchmark::print(const ResolvedFrame& resolved, const engine::Frame& f
   out["rays"] = truth.rays;
   out["scrambles"] = kTruthScrambles;
   out["key"] = found.key;
+  if (!found.environmentKey.empty()) out["environment_key"] = found.environmentKey;
   out["file"] = found.file;
   out["cached"] = found.cached;
   out["build_ms"] = found.buildMs;
   out["trace_ms"] = found.traceMs;
   if (!json)
-    std::printf("%s, %dx%d, %d pixels seen, R = %g, W with the %s membership, %d rays a pixel\n%s\n\n%-15s %9s %12s %12s\n",
+    std::printf("%s, %dx%d, %d pixels seen, R = %g, W with the %s membership, %d rays a pixel\n%s\n\n%-20s %9s %12s %12s\n",
                 scene.c_str(), frame.width, frame.height, seenPixels(frame), double(resolved.frame.transfer.radius), membership.c_str(),
                 truth.rays,
                 found.cached ? ("from " + found.file).c_str()
                              : ("tree " + std::to_string(int(found.buildMs)) + " ms, rays " + std::to_string(int(found.traceMs)) + " ms").c_str(),
                 "plane", "mean", "rms error", "max error");
   for (const TruthPlane& plane : truthPlanes()) {
+    if (!has(found.truth, plane)) continue;
     const TruthSummary s = summaryOf(plane, found.truth, frame);
     out["planes"].push_back({{"name", plane.name}, {"mean", s.mean}, {"standard_error_rms", s.rmsError}, {"standard_error_max", s.maxError}});
-    if (!json) std::printf("%-15s %9.5f %12.6f %12.6f\n", plane.name, s.mean, s.rmsError, s.maxError);
+    if (!json) std::printf("%-20s %9.5f %12.6f %12.6f\n", plane.name, s.mean, s.rmsError, s.maxError);
   }
   if (json) std::printf("%s\n", out.dump().c_str());
 }

@@ -6,7 +6,9 @@
 #include <cstdio>
 
 #include "obscura/apps/cache_folder.h"
+#include "obscura/apps/environment_truth.h"
 #include "obscura/apps/truth_cache.h"
+#include "obscura/engine/ambient_light.h"
 #include "obscura/engine/gltf.h"
 #include "obscura/raster/stopwatch.h"
 
@@ -29,8 +31,11 @@ void TruthOptions::addTo(CLI::App& app) {
   app.add_flag("--no-cache", noCache, "trace it, and keep nothing")->group(group);
 }
 
+const std::vector<std::string> kEnvironmentOptions = {"--environment", "--env-projection", "--env-rotate", "--env-intensity", "--env-cache"};
+
 void removeEstimatorOptions(CLI::App& app, FrameOptions& options, const std::vector<std::string>& kept) {
   options.displacement = false;
+  options.brdf = post::Brdf::Lambert;
   const auto concerned = [](const CLI::Option* o) {
     return o->get_group() == "Ambient transfer" || o->get_group() == "Environment" || o->get_group() == "Lights" ||
            o->get_group().rfind("Display", 0) == 0;
@@ -51,7 +56,13 @@ engine::Result<TracedFrame> renderTraced(const std::string& file, const FrameOpt
   if (change) change(*scene);
   auto resolved = options.resolve(*scene);
   if (!resolved) return resolved.error();
-  TracedFrame out{std::move(*scene), std::move(*resolved), {}};
+  TracedFrame out{std::move(*scene), std::move(*resolved), {}, {}};
+  if (const EnvironmentOptions& e = options.environment; !e.file.empty()) {
+    raster::Parallel parallel(out.resolved.raster.threads);
+    auto map = engine::readEnvironmentMap(e.file, e.projection, parallel);
+    if (!map) return map.error();
+    out.environment = std::move(map->map);
+  }
 
   progress.step("rendering");
   out.resolved.frame.aovs = truthAovs();
@@ -80,43 +91,59 @@ double rmsOver(const PlaneRefs& planes, const raster::Plane<uint8_t>& seen) {
 }
 
 engine::Result<SceneTruth> truthOfFrame(const engine::Scene& scene, const ResolvedFrame& resolved, const engine::Frame& frame,
-                                        const TruthOptions& options, Progress& progress) {
+                                        const TruthOptions& options, Progress& progress,
+                                        const std::optional<engine::EnvironmentMap>& environment) {
   TruthSettings settings;
   settings.radius = resolved.frame.transfer.radius;
   settings.membership = resolved.frame.transfer.membership;
   settings.rays = options.rays;
   settings.threads = resolved.raster.threads;
 
-  progress.step("looking for the truth");
   const RaySurface surface(scene, resolved.frame.camera);
-  SceneTruth out;
-  out.key = truthKey(scene, surface, resolved.frame, frame, settings);
-  const std::string folder = options.noCache ? "" : options.cache.value_or(defaultCacheFolder());
-  if (!folder.empty()) {
-    out.file = truthFile(folder, out.key);
-    if (auto found = loadTruth(out.file, out.key, frame.width, frame.height)) {
-      out.truth = std::move(*found);
-      out.cached = true;
-      return out;
-    }
-  }
-
-  progress.step("tracing the truth");
-  const RayScene rays(surface, settings.threads);
-  out.buildMs = rays.buildMs();
   const TruthStarts starts(scene, surface, resolved.frame, frame);
-  raster::Stopwatch watch;
-  std::atomic<int> rows{0};
-  out.truth = traceTruth(surface, rays, starts, frame.width, frame.height, settings,
-                         [&](int n) { progress.at(double(rows += n) / frame.height); });
-  out.traceMs = watch.lap();
-  if (folder.empty()) return out;
-  if (const auto stored = storeTruth(out.file, out.key, out.truth); !stored) {
-    if (options.cache) return stored.error();
-    progress.clear();
-    std::fprintf(stderr, "obscura-bench: warning: the truth is not kept: %s\n", stored.error().text().c_str());
-    out.file.clear();
-  }
+  std::optional<RayScene> rays;
+  const std::string folder = options.noCache ? "" : options.cache.value_or(defaultCacheFolder());
+  SceneTruth out;
+  // From the cache, or traced and kept there. trace(done)
+  const auto kept = [&](const char* what, const std::string& key, int quantities, const auto& trace) -> engine::Result<Truth> {
+    progress.step(what);
+    const std::string file = folder.empty() ? "" : truthFile(folder, key);
+    if (!file.empty())
+      if (auto found = loadTruth(file, key, frame.width, frame.height, quantities)) return std::move(*found);
+    out.cached = false;
+    if (!rays) rays.emplace(surface, settings.threads);
+    out.buildMs = rays->buildMs();
+    raster::Stopwatch watch;
+    std::atomic<int> rows{0};
+    Truth traced = trace([&](int n) { progress.at(double(rows += n) / frame.height); });
+    out.traceMs += watch.lap();
+    if (file.empty()) return traced;
+    if (const auto stored = storeTruth(file, key, traced); !stored) {
+      if (options.cache) return stored.error();
+      progress.clear();
+      std::fprintf(stderr, "obscura-bench: warning: the truth is not kept: %s\n", stored.error().text().c_str());
+    }
+    return traced;
+  };
+
+  out.key = truthKey(scene, surface, resolved.frame, frame, settings);
+  if (!folder.empty()) out.file = truthFile(folder, out.key);
+  auto truth = kept("tracing the truth", out.key, kTruthQuantities, [&](const auto& done) {
+    return traceTruth(surface, *rays, starts, frame.width, frame.height, settings, done);
+  });
+  if (!truth) return truth.error();
+  out.truth = std::move(*truth);
+  if (!environment) return out;
+
+  out.environmentKey = environmentTruthKey(out.key, *environment, resolved.frame);
+  auto light = kept("tracing the environment's light", out.environmentKey, kEnvironmentQuantities, [&](const auto& done) {
+    raster::Parallel parallel(settings.threads);
+    const EnvironmentSampler sampler(*environment, engine::viewFromEnvironment(resolved.frame.camera, resolved.frame.environmentRotation),
+                                     resolved.frame.environmentIntensity, parallel);
+    return traceEnvironment(surface, *rays, starts, sampler, frame.width, frame.height, settings, done);
+  });
+  if (!light) return light.error();
+  append(out.truth, std::move(*light));
   return out;
 }
 

@@ -13,6 +13,7 @@
 #include "obscura/apps/frame_options.h"
 #include "obscura/apps/progress.h"
 #include "obscura/apps/truth.h"
+#include "obscura/engine/environment_map.h"
 
 namespace obscura::apps {
 
@@ -26,6 +27,7 @@ struct TruthOptions {
 
 // Takes away the options of a frame that say how the ambient transfer is estimated, but for `kept`, and those that say what
 // is done with it: a truth depends on none of them. Rays meet the triangles of a mesh, so nothing is displaced.
+extern const std::vector<std::string> kEnvironmentOptions;  // of the frame's that say which one there is
 void removeEstimatorOptions(CLI::App& app, FrameOptions& options, const std::vector<std::string>& kept = {"--radius", "--membership"});
 
 // A frame that truths are traced of.
@@ -33,6 +35,7 @@ struct TracedFrame {
   engine::Scene scene;
   ResolvedFrame resolved;
   engine::Frame frame;  // with truthAovs() and those asked for
+  std::optional<engine::EnvironmentMap> environment;  // of the options' file
 };
 
 // Loads and renders; `change` is made to the scene before. Usage, BadInput: also where nothing is visible.
@@ -47,14 +50,15 @@ double rmsOver(const PlaneRefs& planes, const raster::Plane<uint8_t>& seen);
 
 struct SceneTruth {
   Truth truth;
-  std::string key, file;  // file: empty without a cache
-  bool cached = false;
+  std::string key, environmentKey, file;  // file: of what depends on no environment; empty without a cache
+  bool cached = true;  // nothing was traced
   double buildMs = 0, traceMs = 0;  // of Embree's tree and of the rays; 0 if cached
 };
 
-// The frame has truthAovs() and no supersampling. A cache that cannot be written is an error where it was named, else a
+// Of a frame that has truthAovs() and no supersampling; with the environment's planes if there is one. A cache that cannot be written is an error where it was named, else a
 // warning on standard error. CannotWrite; throws what RayScene and traceTruth throw.
 engine::Result<SceneTruth> truthOfFrame(const engine::Scene& scene, const ResolvedFrame& resolved, const engine::Frame& frame,
-                                        const TruthOptions& options, Progress& progress);
+                                        const TruthOptions& options, Progress& progress,
+                                        const std::optional<engine::EnvironmentMap>& environment = {});
 
 }  // namespace obscura::apps

@@ -6,16 +6,16 @@
 #include <glm/geometric.hpp>
 
 #include "obscura/apps/sobol.h"
+#include "obscura/apps/truth_pixels.h"
 #include "obscura/post/transfer_samples.h"
-#include "obscura/raster/parallel.h"
 
 namespace obscura::apps {
 namespace {
 
-using Sums = double[kTruthQuantities];
+using Sums = double*;  // one for each quantity
 
 // What a first hit at the distance d = reach of R tells of every O; `cosine` is the direction's to the normal.
-void addObscurances(double d, double cosine, Sums& sums) {
+void addObscurances(double d, double cosine, Sums sums) {
   for (int m = 0; m < 4; ++m) sums[m] += d < 1 ? post::membershipOf(post::Membership(m), d) : 1;
   // The sphere's chord is R cos long; int r^2 dr of its part in sight over that of the sphere, by the density cos / pi:
   // (min(d, cos)^3 / 3) (pi / cos) / (pi / 6).
@@ -24,7 +24,7 @@ void addObscurances(double d, double cosine, Sums& sums) {
 }
 
 // The same of what directions tell that are evenly spread over the half sphere.
-void addEvenly(double d, Sums& sums) {
+void addEvenly(double d, Sums sums) {
   const double part = std::min(d, 1.0);
   sums[int(TruthQuantity::Ball)] += part * part * part;
   sums[int(TruthQuantity::Horizon)] += part * part;
@@ -36,13 +36,19 @@ struct Path {
   glm::dvec3 direction{0};
 };
 
-class Tracer {
+class Tracer : public PixelTracer {
  public:
   Tracer(const RaySurface& surface, const RayScene& rays, const TruthSettings& settings)
       : surface_(surface), rays_(rays), settings_(settings) {}
 
+  void add(const TruthStart& start, uint32_t first, int count, uint32_t pixelSeed, int scramble, double* sums) override {
+    trace(start, first, count, hashed(pixelSeed, uint32_t(scramble)), sums);
+    traceEvenly(start, first, count, hashed(pixelSeed, uint32_t(scramble + kTruthScrambles)), sums);
+  }
+
+ private:
   // Adds `count` paths, points first ... of the scramble `seed`.
-  void trace(const TruthStart& start, uint32_t first, int count, uint32_t seed, Sums& sums) {
+  void trace(const TruthStart& start, uint32_t first, int count, uint32_t seed, Sums sums) {
     batch_.count = count;
     for (int i = 0; i < count; ++i) paths_[i] = {start, glm::dvec3(1), {}}, alive_[i] = true;
     for (int hits = 0; hits < kTruthHits; ++hits) {
@@ -64,7 +70,7 @@ class Tracer {
   }
 
   // Alike, first hits of directions that are evenly spread.
-  void traceEvenly(const TruthStart& start, uint32_t first, int count, uint32_t seed, Sums& sums) {
+  void traceEvenly(const TruthStart& start, uint32_t first, int count, uint32_t seed, Sums sums) {
     batch_.count = count;
     for (int i = 0; i < count; ++i) {
       paths_[i].at = start, batch_.reach[i] = -1;
@@ -74,8 +80,7 @@ class Tracer {
     for (int i = 0; i < count; ++i) addEvenly(distance(i), sums);
   }
 
- private:
-  static void addLight(const glm::dvec3& light, Sums& sums) {
+  static void addLight(const glm::dvec3& light, Sums sums) {
     for (int c = 0; c < 3; ++c) sums[int(TruthQuantity::TransferR) + c] += light[c];
   }
 
@@ -104,7 +109,7 @@ class Tracer {
   bool hit(int i) const { return !below(i) && batch_.instance[i] != RayBatch::kMiss; }
   double distance(int i) const { return below(i) ? 0 : hit(i) ? double(batch_.reach[i]) / settings_.radius : 1; }  // of R
 
-  void meet(int i, bool first, Sums& sums) {
+  void meet(int i, bool first, Sums sums) {
     Path& p = paths_[i];
     const double d = distance(i);
     if (first) addObscurances(d, glm::dot(p.direction, p.at.normal), sums);
@@ -124,34 +129,12 @@ class Tracer {
   bool alive_[RayBatch::kSize];
 };
 
-void tracePixel(Tracer& tracer, const TruthStart& start, uint32_t pixelSeed, const TruthSettings& s, int x, int y, Truth& out) {
-  const int perScramble = s.rays / kTruthScrambles;
-  double mean[kTruthQuantities] = {}, square[kTruthQuantities] = {};
-  for (int k = 0; k < kTruthScrambles; ++k) {
-    Sums sums = {};
-    for (int i = 0; i < perScramble; i += RayBatch::kSize) {
-      const int count = std::min(RayBatch::kSize, perScramble - i);
-      tracer.trace(start, uint32_t(i), count, hashed(pixelSeed, uint32_t(k)), sums);
-      tracer.traceEvenly(start, uint32_t(i), count, hashed(pixelSeed, uint32_t(k + kTruthScrambles)), sums);
-    }
-    for (int q = 0; q < kTruthQuantities; ++q) {
-      const double v = sums[q] / perScramble;
-      mean[q] += v / kTruthScrambles;
-      square[q] += v * v / kTruthScrambles;
-    }
-  }
-  for (int q = 0; q < kTruthQuantities; ++q) {
-    out.value[q].at(x, y) = float(mean[q]);
-    out.error[q].at(x, y) = float(std::sqrt(std::max(0.0, square[q] - mean[q] * mean[q]) / (kTruthScrambles - 1)));
-  }
-}
-
 }  // namespace
 
-Truth::Truth(int width, int height) {
-  for (int q = 0; q < kTruthQuantities; ++q) {
-    value[q] = raster::Plane<float>(width, height);
-    error[q] = raster::Plane<float>(width, height);
+Truth::Truth(int width, int height, int quantities) {
+  for (int q = 0; q < quantities; ++q) {
+    value.emplace_back(width, height);
+    error.emplace_back(width, height);
   }
 }
 
@@ -163,17 +146,9 @@ const std::vector<engine::Aov>& truthAovs() {
 
 Truth traceTruth(const RaySurface& surface, const RayScene& rays, const TruthStarts& starts, int width, int height,
                  const TruthSettings& settings, const std::function<void(int)>& done) {
-  Truth out(width, height);
-  raster::Parallel(settings.threads).forRanges(size_t(height), 1, [&](size_t begin, size_t end, int) {
-    Tracer tracer(surface, rays, settings);
-    for (int y = int(begin); y < int(end); ++y)
-      for (int x = 0; x < width; ++x)
-        if (starts.seen(x, y)) tracePixel(tracer, starts.at(x, y), starts.seed(x, y), settings, x, y, out);
-        else
-          for (int q = 0; q < kTruthQuantities; ++q) out.value[q].at(x, y) = q < int(TruthQuantity::BounceR), out.error[q].at(x, y) = 0;
-    done(int(end - begin));
-  });
-  return out;
+  std::vector<float> empty(kTruthQuantities, 1);
+  for (int c = 0; c < 3; ++c) empty[size_t(TruthQuantity::BounceR) + size_t(c)] = 0;
+  return tracePixels(starts, width, height, settings, empty, [&] { return std::make_unique<Tracer>(surface, rays, settings); }, done);
 }
 
 }  // namespace obscura::apps

@@ -29,17 +29,21 @@ enum class TruthQuantity : uint8_t {
   Ball,                                // what of the half ball of radius R over the surface is in sight of the point
   Horizon,                             // mean of min(d / R, 1)^2 over the half sphere, without the cosine
   TransferR, TransferG, TransferB,     // W, equation 4, with the albedo at each hit
-  BounceR, BounceG, BounceB            // B = (1 / pi) int (1 - mu) a(y) cos, y what is hit first (long paper, equation 6)
+  BounceR, BounceG, BounceB,           // B = (1 / pi) int (1 - mu) a(y) cos, y what is hit first (long paper, equation 6)
+  // Of an environment, see environment_truth.h.
+  OpenR, OpenG, OpenB, ShadowedR, ShadowedG, ShadowedB, ObscuredR, ObscuredG, ObscuredB, LitR, LitG, LitB
 };
-constexpr int kTruthQuantities = 13;
+constexpr int kTruthQuantities = 13;        // without an environment: up to B
+constexpr int kEnvironmentQuantities = 12;  // from Open on
 
-// One plane per quantity: the mean of the scrambles and its standard error. Empty pixels hold what open ones do:
-// 1, of B 0; and no error.
+// One plane per quantity, the first ones or all: the mean of the scrambles and its standard error. Empty pixels hold what open
+// ones do: 1, of B 0; of an environment's light 0; and no error.
 struct Truth {
-  raster::Plane<float> value[kTruthQuantities], error[kTruthQuantities];
+  std::vector<raster::Plane<float>> value, error;
 
   Truth() = default;
-  Truth(int width, int height);
+  Truth(int width, int height, int quantities = kTruthQuantities);
+  bool hasEnvironment() const { return value.size() > size_t(kTruthQuantities); }
   const raster::Plane<float>& operator[](TruthQuantity q) const { return value[size_t(q)]; }
 };
 

@@ -69,11 +69,11 @@ void addTexture(Hash& hash, const raster::TextureView& t) {
 
 std::vector<uint8_t> payloadOf(const Truth& t) {
   std::vector<uint8_t> bytes;
-  for (const auto* planes : {t.value, t.error})
-    for (int q = 0; q < kTruthQuantities; ++q)
-      for (int y = 0; y < planes[q].height(); ++y) {
-        const auto* row = reinterpret_cast<const uint8_t*>(planes[q].row(y));
-        bytes.insert(bytes.end(), row, row + size_t(planes[q].width()) * sizeof(float));
+  for (const auto* planes : {&t.value, &t.error})
+    for (const raster::Plane<float>& plane : *planes)
+      for (int y = 0; y < plane.height(); ++y) {
+        const auto* row = reinterpret_cast<const uint8_t*>(plane.row(y));
+        bytes.insert(bytes.end(), row, row + size_t(plane.width()) * sizeof(float));
       }
   return bytes;
 }
@@ -115,17 +115,31 @@ std::string truthKey(const engine::Scene& scene, const RaySurface& surface, cons
   return hash.text();
 }
 
+std::string environmentTruthKey(const std::string& truthKey, const engine::EnvironmentMap& map, const engine::FrameSettings& f) {
+  constexpr char kMethod[] = "environment 1";  // counts up when these values change
+  Hash hash;
+  hash.add(kMethod, sizeof kMethod);
+  hash.add(truthKey.data(), truthKey.size());
+  const engine::EnvironmentProjector& p = map.projector();
+  hash.add(p.projection);
+  for (const int v : {p.width, p.height}) hash.add(v);
+  hash.addAll(map.texels());
+  for (const double v : {f.environmentRotation, f.environmentIntensity}) hash.add(v);
+  return hash.text();
+}
+
 std::string truthFile(const std::string& folder, const std::string& key) { return folder + "/truth-" + key + ".bin"; }
 
-std::optional<Truth> loadTruth(const std::string& file, const std::string& key, int width, int height) {
-  const size_t size = size_t(width) * size_t(height) * 4 * 2 * kTruthQuantities;
+std::optional<Truth> loadTruth(const std::string& file, const std::string& key, int width, int height,
+                               int quantities) {
+  const size_t size = size_t(width) * size_t(height) * 4 * 2 * size_t(quantities);
   const std::optional<std::vector<uint8_t>> bytes = engine::loadCached(file, titleOf(key, width, height), size);
   if (!bytes || bytes->size() != size) return std::nullopt;
-  Truth t(width, height);
+  Truth t(width, height, quantities);
   const uint8_t* from = bytes->data();
-  for (auto* planes : {t.value, t.error})
-    for (int q = 0; q < kTruthQuantities; ++q)
-      for (int y = 0; y < height; ++y, from += size_t(width) * 4) std::memcpy(planes[q].row(y), from, size_t(width) * 4);
+  for (auto* planes : {&t.value, &t.error})
+    for (raster::Plane<float>& plane : *planes)
+      for (int y = 0; y < height; ++y, from += size_t(width) * 4) std::memcpy(plane.row(y), from, size_t(width) * 4);
   return t;
 }
 

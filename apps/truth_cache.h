@@ -6,6 +6,7 @@
 #include <string>
 
 #include "obscura/apps/truth.h"
+#include "obscura/engine/environment_map.h"
 #include "obscura/engine/result.h"
 
 namespace obscura::apps {
@@ -17,8 +18,11 @@ std::string truthKey(const engine::Scene& scene, const RaySurface& surface, cons
 
 std::string truthFile(const std::string& folder, const std::string& key);
 
+// Alike, of the environment's planes, by the truth's key: also the map's texels, how it is turned, and its factor.
+std::string environmentTruthKey(const std::string& truthKey, const engine::EnvironmentMap& map, const engine::FrameSettings& frameSettings);
+
 // As engine/content_cache.h has it.
-std::optional<Truth> loadTruth(const std::string& file, const std::string& key, int width, int height);
+std::optional<Truth> loadTruth(const std::string& file, const std::string& key, int width, int height, int quantities = kTruthQuantities);
 
 engine::Result<engine::Done> storeTruth(const std::string& file, const std::string& key, const Truth& truth);
 

@@ -12,7 +12,7 @@ using engine::Error;
 using engine::ErrorCode;
 using Planes = raster::Plane<float>;
 
-engine::Layer layerOf(const TruthPlane& plane, const Planes* planes, const std::string& suffix) {
+engine::Layer layerOf(const TruthPlane& plane, const std::vector<Planes>& planes, const std::string& suffix) {
   const Planes& first = planes[size_t(plane.quantities[0])];
   const bool rgb = plane.quantities.size() == 3;
   std::vector<std::string> channels = {"Y"};
@@ -32,20 +32,31 @@ const std::vector<TruthPlane>& truthPlanes() {
                                                  {"ball", {Q::Ball}},
                                                  {"horizon", {Q::Horizon}},
                                                  {"transfer", {Q::TransferR, Q::TransferG, Q::TransferB}},
-                                                 {"bounce", {Q::BounceR, Q::BounceG, Q::BounceB}}};
+                                                 {"bounce", {Q::BounceR, Q::BounceG, Q::BounceB}},
+                                                 {"environment_open", {Q::OpenR, Q::OpenG, Q::OpenB}},
+                                                 {"environment_shadowed", {Q::ShadowedR, Q::ShadowedG, Q::ShadowedB}},
+                                                 {"environment_obscured", {Q::ObscuredR, Q::ObscuredG, Q::ObscuredB}},
+                                                 {"environment_lit", {Q::LitR, Q::LitG, Q::LitB}}};
   return planes;
 }
 
-engine::Result<std::vector<TruthFile>> planTruthFiles(const std::vector<std::string>& outputs, const std::vector<std::string>& names) {
+bool has(const Truth& truth, const TruthPlane& plane) { return size_t(plane.quantities[0]) < truth.value.size(); }
+
+engine::Result<std::vector<TruthFile>> planTruthFiles(const std::vector<std::string>& outputs, const std::vector<std::string>& names,
+                                                      bool environment) {
   std::vector<const TruthPlane*> chosen;
   std::string known;
-  for (const TruthPlane& p : truthPlanes()) known += std::string(p.name) + ", ";
+  const auto& planes = truthPlanes();
+  const auto end = environment ? planes.end() : std::find_if(planes.begin(), planes.end(), [](const TruthPlane& p) {
+    return int(p.quantities[0]) >= kTruthQuantities;
+  });
+  for (auto p = planes.begin(); p != end; ++p) known += std::string(p->name) + ", ";
   for (const std::string& name : names) {
     const size_t before = chosen.size();
-    for (const TruthPlane& p : truthPlanes())
-      if ((name == "all" || name == p.name) && std::find(chosen.begin(), chosen.end(), &p) == chosen.end()) chosen.push_back(&p);
+    for (auto p = planes.begin(); p != end; ++p)
+      if ((name == "all" || name == p->name) && std::find(chosen.begin(), chosen.end(), &*p) == chosen.end()) chosen.push_back(&*p);
     const bool there = name == "all" || std::any_of(chosen.begin(), chosen.end(), [&](auto* p) { return name == p->name; });
-    if (chosen.size() == before && !there) return Error{ErrorCode::Usage, "no plane \"" + name + "\"; there are " + known + "all", "", ""};
+    if (chosen.size() == before && !there) return Error{ErrorCode::Usage, "no plane \"" + name + "\"; there are " + known + "all" + (environment ? "" : ", and more with --environment"), "", ""};
   }
   std::vector<TruthFile> files;
   for (const std::string& path : outputs) {

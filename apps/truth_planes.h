@@ -15,7 +15,8 @@ struct TruthPlane {
   const char* name;  // "linear", "transfer", ...
   std::vector<TruthQuantity> quantities;  // one, or three for R, G, B
 };
-const std::vector<TruthPlane>& truthPlanes();
+const std::vector<TruthPlane>& truthPlanes();  // those of an environment last
+bool has(const Truth& truth, const TruthPlane& plane);
 
 struct TruthFile {
   std::string path;
@@ -23,9 +24,11 @@ struct TruthFile {
   std::vector<const TruthPlane*> planes;
 };
 
-// names: of planes, or "all". An EXR gets them as layers NAME and NAME_error, the other formats as STEM.NAME.EXT and
-// STEM.NAME_error.EXT. Usage: no such plane, a format other than .exr, .npy and .pfm, standard output.
-engine::Result<std::vector<TruthFile>> planTruthFiles(const std::vector<std::string>& outputs, const std::vector<std::string>& names);
+// names: of planes, or "all" that there are, those of an environment or not. An EXR gets them as layers NAME and NAME_error, the other formats as STEM.NAME.EXT and
+// STEM.NAME_error.EXT. Usage: no such plane, one of an
+// environment without one, a format other than .exr, .npy and .pfm, standard output.
+engine::Result<std::vector<TruthFile>> planTruthFiles(const std::vector<std::string>& outputs, const std::vector<std::string>& names,
+                                                      bool environment);
 
 engine::Result<engine::Done> writeTruthFile(const TruthFile& file, const Truth& truth, const engine::Frame& frame);
 

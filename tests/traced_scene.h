@@ -3,12 +3,16 @@
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
+#include <functional>
 #include <optional>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "obscura/apps/environment_truth.h"
 #include "obscura/apps/truth.h"
+#include "obscura/engine/ambient_light.h"
 #include "obscura/engine/frame.h"
 
 namespace obscura::tests {
@@ -58,7 +62,20 @@ struct TracedScene {
     const apps::TruthStarts starts(scene, *surface, settings, frame);
     truth = apps::traceTruth(*surface, rays, starts, frame.width, frame.height, truthSettings, [](int) {});
   }
+  // The environment's planes behind those that are there.
+  void traceEnvironment(const engine::EnvironmentMap& map, double rotation = 0, double intensity = 1) {
+    raster::Parallel parallel(2);
+    const apps::RayScene rays(*surface, 1);
+    const apps::TruthStarts starts(scene, *surface, settings, frame);
+    const apps::EnvironmentSampler sampler(map, engine::viewFromEnvironment(settings.camera, rotation), intensity, parallel);
+    apps::append(truth, apps::traceEnvironment(*surface, rays, starts, sampler, frame.width, frame.height, truthSettings, [](int) {}));
+  }
   bool seen(int x, int y) const { return frame.g.instance.at(x, y) != raster::kNoTriangle; }
+  glm::dvec3 normal(int x, int y) const {  // world space
+    glm::dvec3 n;
+    for (int c = 0; c < 3; ++c) n[c] = frame.g.normal[c].at(x, y);
+    return glm::transpose(glm::dmat3(settings.camera.viewFromWorld)) * n;
+  }
   // Of the point that the pixel sees.
   glm::dvec3 world(int x, int y) const {
     const raster::Camera& c = settings.camera;
@@ -67,5 +84,49 @@ struct TracedScene {
     return glm::dvec3(glm::inverse(c.viewFromWorld) * glm::dvec4(view, 1));
   }
 };
+
+// The traced plane has no bias against `expected`, and errs as much as it says.
+inline void checkAgainst(const TracedScene& t, apps::TruthQuantity q, double biasLimit, const std::function<double(int, int)>& expected) {
+  double n = 0, bias = 0, squares = 0, stated = 0;
+  for (int y = 0; y < t.frame.height; ++y)
+    for (int x = 0; x < t.frame.width; ++x) {
+      const double e = expected(x, y);
+      if (!t.seen(x, y) || e < 0) continue;
+      const double d = t.truth[q].at(x, y) - e, s = t.truth.error[size_t(q)].at(x, y);
+      ++n, bias += d, squares += d * d, stated += s * s;
+    }
+  REQUIRE(n > 100);
+  INFO("quantity " << int(q) << " bias " << bias / n << " rms " << std::sqrt(squares / n) << " stated " << std::sqrt(stated / n));
+  CHECK(std::fabs(bias / n) < biasLimit);
+  CHECK(std::sqrt(squares / n) < 1.2 * std::sqrt(stated / n) + biasLimit);
+  CHECK(std::sqrt(squares / n) > 0.8 * std::sqrt(stated / n) - 1e-6);
+}
+
+inline void addBox(engine::Mesh& m, glm::vec3 lo, glm::vec3 hi) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool upper : {false, true}) {
+      glm::vec3 p[4];
+      for (int k = 0; k < 4; ++k) {
+        p[k][axis] = upper ? hi[axis] : lo[axis];
+        p[k][(axis + 1) % 3] = (k == 1 || k == 2) == upper ? hi[(axis + 1) % 3] : lo[(axis + 1) % 3];
+        p[k][(axis + 2) % 3] = k >= 2 ? hi[(axis + 2) % 3] : lo[(axis + 2) % 3];
+      }
+      TracedScene::addQuad(m, p[0], p[1], p[2], p[3]);
+    }
+}
+
+inline void addBall(engine::Mesh& m, glm::dvec3 center, double radius, int n) {
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= 2 * n; ++i) {
+      const double theta = 3.14159265358979323846 * j / n, phi = 3.14159265358979323846 * (i % (2 * n)) / n;
+      m.normals.emplace_back(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi));
+      m.positions.emplace_back(center + glm::dvec3(m.normals.back()) * radius);
+    }
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < 2 * n; ++i) {
+      const uint32_t a = uint32_t(j * (2 * n + 1) + i), c = a + uint32_t(2 * n + 1);
+      for (const uint32_t k : {a, a + 1, c + 1, a, c + 1, c}) m.indices.push_back(k);
+    }
+}
 
 }  // namespace obscura::tests

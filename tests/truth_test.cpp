@@ -1,7 +1,5 @@
 // The traced truth against what mathematics says it must be.
 #include <cmath>
-#include <functional>
-
 
 #include "obscura/apps/sobol.h"
 #include "obscura/post/transfer_samples.h"
@@ -45,50 +43,6 @@ double cornerEvenly(double h, int power) {
 double cornerSphere(double h) {
   const double cap = std::max(0.0, 0.5 - h);
   return 1 - cap * cap * (1.5 - cap) / 3 * 6;
-}
-
-// The traced plane has no bias against `expected`, and errs as much as it says.
-void checkAgainst(const TracedScene& t, TruthQuantity q, double biasLimit, const std::function<double(int, int)>& expected) {
-  double n = 0, bias = 0, squares = 0, stated = 0;
-  for (int y = 0; y < t.frame.height; ++y)
-    for (int x = 0; x < t.frame.width; ++x) {
-      const double e = expected(x, y);
-      if (!t.seen(x, y) || e < 0) continue;
-      const double d = t.truth[q].at(x, y) - e, s = t.truth.error[size_t(q)].at(x, y);
-      ++n, bias += d, squares += d * d, stated += s * s;
-    }
-  REQUIRE(n > 100);
-  INFO("quantity " << int(q) << " bias " << bias / n << " rms " << std::sqrt(squares / n) << " stated " << std::sqrt(stated / n));
-  CHECK(std::fabs(bias / n) < biasLimit);
-  CHECK(std::sqrt(squares / n) < 1.2 * std::sqrt(stated / n) + biasLimit);
-  CHECK(std::sqrt(squares / n) > 0.8 * std::sqrt(stated / n) - 1e-6);
-}
-
-void addBox(engine::Mesh& m, glm::vec3 lo, glm::vec3 hi) {
-  for (int axis = 0; axis < 3; ++axis)
-    for (const bool upper : {false, true}) {
-      glm::vec3 p[4];
-      for (int k = 0; k < 4; ++k) {
-        p[k][axis] = upper ? hi[axis] : lo[axis];
-        p[k][(axis + 1) % 3] = (k == 1 || k == 2) == upper ? hi[(axis + 1) % 3] : lo[(axis + 1) % 3];
-        p[k][(axis + 2) % 3] = k >= 2 ? hi[(axis + 2) % 3] : lo[(axis + 2) % 3];
-      }
-      TracedScene::addQuad(m, p[0], p[1], p[2], p[3]);
-    }
-}
-
-void addBall(engine::Mesh& m, glm::dvec3 center, double radius, int n) {
-  for (int j = 0; j <= n; ++j)
-    for (int i = 0; i <= 2 * n; ++i) {
-      const double theta = kPi * j / n, phi = kPi * (i % (2 * n)) / n;
-      m.normals.emplace_back(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi));
-      m.positions.emplace_back(center + glm::dvec3(m.normals.back()) * radius);
-    }
-  for (int j = 0; j < n; ++j)
-    for (int i = 0; i < 2 * n; ++i) {
-      const uint32_t a = uint32_t(j * (2 * n + 1) + i), c = a + uint32_t(2 * n + 1);
-      for (const uint32_t k : {a, a + 1, c + 1, a, c + 1, c}) m.indices.push_back(k);
-    }
 }
 
 }  // namespace
