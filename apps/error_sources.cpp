@@ -31,25 +31,23 @@ class Steps {
       : scene_(scene), settings_(resolved.frame), frame_(frame), rays_(rays), threads_(resolved.raster.threads),
         parallel_(resolved.raster.threads),
         projector_(post::makeProjector(settings_.camera, frame.imageWidth, frame.imageHeight)),
-        surface_(scene, settings_.camera) {}
+        surface_(scene, settings_.camera), starts_(scene, surface_, settings_, frame) {}
 
+  // From the G-buffer's point.
   Plane<float> traced() const {
     const RayScene scene(surface_, threads_);
-    return ofPixels([&](const Start& s) {
-      double sum = 0;
-      RayBatch batch;
-      for (int first = 0; first < rays_; first += RayBatch::kSize) {
-        batch.count = std::min(RayBatch::kSize, rays_ - first);
-        for (int i = 0; i < batch.count; ++i) {
-          const glm::dvec3 d = direction(s, first + i), from = s.position + s.normal * (kStartOffset * radius());
-          for (int c = 0; c < 3; ++c) batch.origin[c][i] = float(from[c]), batch.direction[c][i] = float(d[c]);
-          batch.reach[i] = float(radius());
-        }
-        scene.intersect(batch);
-        for (int i = 0; i < batch.count; ++i)
-          sum += batch.instance[i] == RayBatch::kMiss ? 1 : openAt(double(batch.reach[i]) / radius());
-      }
-      return sum / rays_;
+    return ofPixels([&](const Start& s, int, int) {
+      return openOf(scene, s, s.position + s.normal * (kStartOffset * radius()), glm::dvec3(0));
+    });
+  }
+
+  // From the triangle's, about its own normal or that of the G-buffer.
+  Plane<float> tracedFromTriangle(bool ownNormal) const {
+    const RayScene scene(surface_, threads_);
+    return ofPixels([&](Start s, int x, int y) {
+      const TruthStart at = starts_.at(x, y);
+      if (ownNormal) s.normal = at.outside;
+      return openOf(scene, s, at.position, at.outside);
     });
   }
 
@@ -57,7 +55,7 @@ class Steps {
   // firstLayer it must be what the depth map shows there, too.
   Plane<float> inSolids(const RayKeep* keep, bool firstLayer) const {
     const RayScene scene(surface_, threads_, keep);
-    return ofPixels([&](const Start& s) {
+    return ofPixels([&](const Start& s, int, int) {
       int outside = 0;
       RayBatch batch;
       for (int first = 0; first < rays_; first += RayBatch::kSize) {
@@ -78,7 +76,7 @@ class Steps {
   // Everything that the depth map shows is R deep.
   Plane<float> inDepthMap() const {
     const double deepest = settings_.transfer.silhouetteBound ? radius() : std::numeric_limits<double>::infinity();
-    return ofPixels([&](const Start& s) {
+    return ofPixels([&](const Start& s, int, int) {
       int outside = 0;
       for (int i = 0; i < kErrorTests; ++i) {
         const glm::dvec3 p = testPoint(s, i);
@@ -126,6 +124,24 @@ class Steps {
   bool isSeen(int x, int y) const { return frame_.g.instance.at(x, y) != raster::kNoTriangle; }
   double openAt(double d) const { return post::membershipOf(settings_.transfer.membership, d); }
   glm::dvec3 direction(const Start& s, int i) const { return cosineDirection(s.normal, sobolPoint(uint32_t(i), s.seed)); }
+
+  // O by rays from `from`; directions that lead to the other side of `outside` are blocked at once, if it is not 0.
+  double openOf(const RayScene& scene, const Start& s, const glm::dvec3& from, const glm::dvec3& outside) const {
+    double sum = 0;
+    RayBatch batch;
+    for (int first = 0; first < rays_; first += RayBatch::kSize) {
+      batch.count = std::min(RayBatch::kSize, rays_ - first);
+      for (int i = 0; i < batch.count; ++i) {
+        const glm::dvec3 d = direction(s, first + i);
+        for (int c = 0; c < 3; ++c) batch.origin[c][i] = float(from[c]), batch.direction[c][i] = float(d[c]);
+        batch.reach[i] = glm::dot(d, outside) < 0 ? -1 : float(radius());
+      }
+      scene.intersect(batch);
+      for (int i = 0; i < batch.count; ++i)
+        if (batch.reach[i] >= 0) sum += batch.instance[i] == RayBatch::kMiss ? 1 : openAt(double(batch.reach[i]) / radius());
+    }
+    return sum / rays_;
+  }
 
   Start startAt(int x, int y) const {
     Start s;
@@ -180,7 +196,7 @@ class Steps {
     Plane<float> out(frame_.width, frame_.height);
     parallel_.forRanges(size_t(frame_.height), 1, [&](size_t begin, size_t end, int) {
       for (int y = int(begin); y < int(end); ++y)
-        for (int x = 0; x < frame_.width; ++x) out.at(x, y) = isSeen(x, y) ? float(value(startAt(x, y))) : 1.0f;
+        for (int x = 0; x < frame_.width; ++x) out.at(x, y) = isSeen(x, y) ? float(value(startAt(x, y), x, y)) : 1.0f;
     });
     return out;
   }
@@ -192,6 +208,7 @@ class Steps {
   mutable raster::Parallel parallel_;
   post::Projector projector_;
   RaySurface surface_;
+  TruthStarts starts_;
 };
 
 }  // namespace
@@ -206,6 +223,10 @@ std::vector<ErrorStep> errorSteps(const engine::Scene& scene, const ResolvedFram
     out.push_back({name, what, std::move(value), change, {}});
     done(double(out.size()) / kErrorSteps);
   };
+  Plane<float> exact(frame.width, frame.height);
+  for (int y = 0; y < frame.height; ++y) std::copy_n(truth.row(y), frame.width, exact.row(y));
+  add("normals", "the G-buffer's normal says where the surface faces, as for the truth", std::move(exact));
+  out.back().change = steps.change(steps.tracedFromTriangle(false), steps.tracedFromTriangle(true));
   add("surface", "rays start at the G-buffer's point, about its normal", steps.traced());
   add("containment", "one test point a ray, in solids, instead of the first surface on it", steps.inSolids(nullptr, false));
   const RayKeep keep = steps.insideOfImage();

@@ -1,7 +1,5 @@
 // obscura-bench pareto: its measures of error against closed forms, and the program on a tiny scene.
-#undef OBSCURA_PROGRAM
-#define OBSCURA_PROGRAM OBSCURA_BIN_DIR "/obscura-bench"
-#include <catch2/catch.hpp>
+#include "bench_program.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,14 +7,11 @@
 #include <map>
 #include <set>
 
-#include "cli_scene.h"
 #include "obscura/apps/error_measures.h"
 #include "obscura/engine/image_file.h"
-#include "run_program.h"
 
 using namespace obscura;
 using namespace obscura::tests;
-using Json = nlohmann::json;
 
 namespace {
 
@@ -28,14 +23,9 @@ raster::Plane<T> planeOf(int width, int height, const std::function<T(int, int)>
   return p;
 }
 
-const std::vector<std::string> kTiny = {"--size", "32x24", "--eye", "1.2,1.1,4.9", "--target", "0.9,0.8,0", "--rays", "512", "--frames", "2", "--samples", "1,4", "--rays-embree", "1,64"};
+const Words kTiny = {"--size", "32x24", "--eye", "1.2,1.1,4.9", "--target", "0.9,0.8,0", "--rays", "512", "--frames", "2", "--samples", "1,4", "--rays-embree", "1,64"};
 
-Finished pareto(const SceneFolder& s, std::vector<std::string> more) {
-  std::vector<std::string> words = {"pareto", s.scene, "--cache", s / "cache"};
-  words.insert(words.end(), kTiny.begin(), kTiny.end());
-  words.insert(words.end(), more.begin(), more.end());
-  return runProgram(words);
-}
+Words pareto(const SceneFolder& s, const Words& more) { return Words{"pareto", s.scene, "--cache", s / "cache"} + kTiny + more; }
 
 }  // namespace
 
@@ -74,10 +64,7 @@ TEST_CASE("pareto: equal images have no error, one wrong pixel in a hundred is i
 
 TEST_CASE("pareto: every combination is a row with all its figures, rays come nearer to the truth by their number") {
   const SceneFolder s;
-  const Finished f = pareto(s, {"--json", "--csv", s / "rows.csv", "--plot", s / "plot.gp", "--map", "3", s / "map.png"});
-  INFO(f.err);
-  REQUIRE(f.code == 0);
-  const Json out = Json::parse(f.out, nullptr, false);
+  const Json out = printedBy(pareto(s, {"--csv", s / "rows.csv", "--plot", s / "plot.gp", "--map", "3", s / "map.png"}));
   REQUIRE(out["scenes"].size() == 1);
   const Json& scene = out["scenes"][0];
   CHECK(scene["embree_build_ms"] > 0);
@@ -117,11 +104,8 @@ TEST_CASE("pareto: every combination is a row with all its figures, rays come ne
 
 TEST_CASE("pareto: layers, the silhouettes' bound and the steps of horizons are swept, and each changes what is measured") {
   const SceneFolder s;
-  const Finished f = pareto(s, {"--json", "--estimator", "box", "--filter", "off", "--quantity", "O",
-                                "--layers", "1,2", "--silhouette-bound", "on,off", "--peer", "vao,gtao", "--peer-steps", "2,4"});
-  INFO(f.err);
-  REQUIRE(f.code == 0);
-  const Json rows = Json::parse(f.out, nullptr, false)["scenes"][0]["rows"];
+  const Json rows = printedBy(pareto(s, {"--estimator", "box", "--filter", "off", "--quantity", "O", "--layers", "1,2",
+                                         "--silhouette-bound", "on,off", "--peer", "vao,gtao", "--peer-steps", "2,4"}))["scenes"][0]["rows"];
   REQUIRE(rows.size() == 2 * (4 + 1 + 2 + 1));
   const auto differ = [&](int a, int b) { return rows[size_t(a)]["digest"] != rows[size_t(b)]["digest"]; };  // n = 4
   CHECK((differ(1, 3) && differ(1, 5) && differ(11, 13)));
@@ -131,8 +115,8 @@ TEST_CASE("pareto: layers, the silhouettes' bound and the steps of horizons are 
 
 TEST_CASE("pareto: the table has a line for each row, several scenes have a table each, nonsense ends with exit code 2") {
   const SceneFolder s;
-  const std::vector<std::string> few = {"--estimator", "sobol", "--filter", "plane", "--quantity", "O,W-own", s.scene};
-  const Finished f = pareto(s, few);
+  const Words few = {"--estimator", "sobol", "--filter", "plane", "--quantity", "O,W-own", s.scene};
+  const Finished f = runProgram(pareto(s, few));
   INFO(f.err);
   REQUIRE(f.code == 0);
   size_t tables = 0, rows = 0;
@@ -140,14 +124,9 @@ TEST_CASE("pareto: the table has a line for each row, several scenes have a tabl
   for (size_t at = f.out.find(" plane "); at != f.out.npos; at = f.out.find(" plane ", at + 1)) ++rows;
   CHECK(tables == 2);
   CHECK(rows == 2 * (2 + 2 + 4 * 2 + 2));
-  using Words = std::vector<std::string>;
   for (const Words& words : {Words{"--map", "0", s / "m.png"}, Words{"--map", "127", s / "m.png"}, Words{"--map", "x", s / "m.png"},
                              Words{"--plot", "plot.jpg"}, Words{"--estimator", "guess"}, Words{"--filter", "on"},
-                             Words{"--samples", "65"}, Words{"--layers", "3"}, Words{"--peer", "alchemy"}, Words{"--peer-steps", "17"}, Words{"--albedo", "own"}}) {
-    INFO(words[0] << " " << words[1]);
-    const Finished wrong = pareto(s, words);
-    CHECK(wrong.code == 2);
-    CHECK(wrong.out.empty());
-  }
-  CHECK(runProgram({"pareto", "/nonexistent.glb"}).code == 3);
+                             Words{"--samples", "65"}, Words{"--layers", "3"}, Words{"--peer", "alchemy"}, Words{"--peer-steps", "17"}, Words{"--albedo", "own"}})
+    checkFails(pareto(s, words), 2);
+  checkFails({"pareto", "/nonexistent.glb"}, 3);
 }

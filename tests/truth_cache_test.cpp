@@ -1,18 +1,15 @@
 // What is kept of a truth, and obscura-bench truth as a user meets it.
-#undef OBSCURA_PROGRAM
-#define OBSCURA_PROGRAM OBSCURA_BIN_DIR "/obscura-bench"
+#include "bench_program.h"
+
 #include <functional>
 #include <set>
 
-#include "cli_scene.h"
 #include "obscura/apps/truth_cache.h"
 #include "obscura/engine/image_file.h"
-#include "run_program.h"
 #include "traced_scene.h"
 
 using namespace obscura;
 using namespace obscura::tests;
-using Json = nlohmann::json;
 
 namespace {
 
@@ -24,16 +21,7 @@ void makeCorner(TracedScene& t) {
 
 std::string keyOf(const TracedScene& t) { return apps::truthKey(t.scene, *t.surface, t.settings, t.frame, t.truthSettings); }
 
-Json printed(std::vector<std::string> words) {
-  words.insert(words.begin(), "truth");
-  words.push_back("--json");
-  const Finished f = runProgram(words);
-  INFO(f.err);
-  REQUIRE(f.code == 0);
-  Json out = Json::parse(f.out, nullptr, false);
-  REQUIRE(out.is_object());
-  return out;
-}
+Json printed(const Words& words) { return printedBy(Words{"truth"} + words); }
 
 }  // namespace
 
@@ -96,7 +84,7 @@ TEST_CASE("truth: the key changes with scene, camera, size and settings, and wit
 
 TEST_CASE("truth: the program keeps a truth by its content, traces it again when the file is broken, and writes planes") {
   const SceneFolder s;
-  const std::vector<std::string> words = {s.scene, "--size", "24x18", "--rays", "16", "--cache", s / "cache"};
+  const Words words = {s.scene, "--size", "24x18", "--rays", "16", "--cache", s / "cache"};
   const Json first = printed(words);
   CHECK(first["cached"] == false);
   CHECK(first["trace_ms"] > 0);
@@ -116,12 +104,9 @@ TEST_CASE("truth: the program keeps a truth by its content, traces it again when
   CHECK(second["planes"] == first["planes"]);
   CHECK(printed(words)["cached"] == true);
 
-  std::vector<std::string> crop = words;
-  crop.insert(crop.end(), {"--crop", "4,6,8x5", "--plane", "linear,transfer", "-o", s / "part.npy", "-o", s / "part.pfm", "--threads", "1"});
-  CHECK(printed(crop)["cached"] == false);
-  std::vector<std::string> whole = words;
-  whole.insert(whole.end(), {"--plane", "linear", "-o", s / "whole.npy"});
-  printed(whole);
+  const Words crop = {"--crop", "4,6,8x5", "--plane", "linear,transfer", "-o", s / "part.npy", "-o", s / "part.pfm", "--threads", "1"};
+  CHECK(printed(words + crop)["cached"] == false);
+  printed(words + Words{"--plane", "linear", "-o", s / "whole.npy"});
   const auto part = engine::readImage(s / "part.linear.npy"), all = engine::readImage(s / "whole.linear.npy");
   REQUIRE((part.ok() && all.ok()));
   CHECK((part->width == 8 && part->height == 5 && all->width == 24));
@@ -134,21 +119,14 @@ TEST_CASE("truth: the program keeps a truth by its content, traces it again when
 
 TEST_CASE("truth: nonsense ends with exit code 2, a scene that is not there with 3, what cannot be written with 4") {
   const SceneFolder s;
-  using Words = std::vector<std::string>;
-  const auto code = [&](Words words) {
-    words.insert(words.begin(), {"truth", s.scene, "--size", "8x6"});
-    const Finished f = runProgram(words);
-    CHECK(f.out.empty());
-    CHECK(std::count(f.err.begin(), f.err.end(), '\n') >= 1);
-    return f.code;
-  };
+  const auto fails = [&](const Words& words, int code) { checkFails(Words{"truth", s.scene, "--size", "8x6"} + words, code); };
   for (const Words& words : {Words{"--rays", "12"}, Words{"--rays", "0"}, Words{"--rays", "8.5"}, Words{"--plane", "depth", "--no-cache"},
                              Words{"-o", "x.png", "--no-cache"}, Words{"--samples", "4"}, Words{"--radius", "0"}})
-    CHECK(code(words) == 2);
-  CHECK(code({"--eye", "0,0,900", "--target", "0,0,901", "--no-cache"}) == 3);
-  CHECK(code({"--rays", "8", "--cache", s.scene + "/in-a-file"}) == 4);
-  CHECK(code({"--rays", "8", "--no-cache", "-o", "/nonexistent/x.npy"}) == 4);
-  CHECK(runProgram({"truth", "/nonexistent.glb"}).code == 3);
+    fails(words, 2);
+  fails({"--eye", "0,0,900", "--target", "0,0,901", "--no-cache"}, 3);
+  fails({"--rays", "8", "--cache", s.scene + "/in-a-file"}, 4);
+  fails({"--rays", "8", "--no-cache", "-o", "/nonexistent/x.npy"}, 4);
+  checkFails({"truth", "/nonexistent.glb"}, 3);
 }
 
 TEST_CASE("truth: a surface that a height map would displace is flat, in the frame as for the rays") {
