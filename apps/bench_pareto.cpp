@@ -94,7 +94,7 @@ void ParetoBenchmark::addTo(CLI::App& app, int& status) {
     c->add_option(name, values, what)->delimiter(',')->allow_extra_args(false)->check(valid)->capture_default_str()->group("Sweep");
   };
   list("--samples", sweep.samples, "n, rays per pixel", CLI::Range(1, 64));
-  list("--steps", sweep.steps, "m, test points per ray", CLI::Range(1, 4));
+  list("--steps", sweep.steps, "m, test points per ray", CLI::Range(1, post::kMaxSteps));
   list("--rays-embree", sweep.rays, "rays a pixel of Embree's rows", CLI::Range(1, 1024));
   list("--estimator", sweep.estimators, "where the rays come from", CLI::IsMember(namesOf(kEstimatorNames)));
   list("--peer", sweep.peers, "methods of other people: peer_methods.h", CLI::IsMember(namesOf(kPeerMethodNames)));

@@ -154,16 +154,27 @@ void addAmbient(CLI::App& app, FrameOptions& o) {
             "what W takes from what occludes: the pixel's own albedo, that of the occluder, or the radiance that the frame "
             "holds there (emission; ambient light and direct lights, reflected once)")
       ->group(group);
+  // Before the options that it chooses for: CLI11 hands values on in the order of the options, so that these have the last word.
+  addRead(app, "--quality", "draft|standard|high|reference|paper",
+          "how much time estimator, samples, steps, layers and filter guide may take: rays marched with (n, m) of (1, 2), (4, 3), "
+          "(8, 8), or (16, 8) in two layers; or the papers' shader, n = 8; options of your own go on top [" +
+              nameOf(kQualityNames, o.quality) + "]",
+          [&o](const std::string& text) {
+            for (const auto& [name, quality] : kQualityNames)
+              if (name == text) return engine::setQuality(o.transfer, o.quality = quality), true;
+            return false;
+          })
+      ->group(group);
   addInteger(app, "--samples", 1, 64, o.transfer.samples,
              "n, rays per pixel [" + std::to_string(o.transfer.samples) + "]")
       ->group(group);
-  addInteger(app, "--steps", 1, 4, o.transfer.steps,
+  addInteger(app, "--steps", 1, post::kMaxSteps, o.transfer.steps,
              "m, test points per ray [" + std::to_string(o.transfer.steps) + "]")
       ->group(group);
   addLength(app, "--radius", false, o.radius, "R, how far occluders reach",
             fraction(engine::kDefaultRadius, "the scene's size (the diagonal of its bounds)"))->group(group);
   addChoice(app, "--membership", kMembershipNames, o.transfer.membership, "how open a direction is by the distance of its occluder")->group(group);
-  addLength(app, "--bias", true, o.bias, "how deep behind a surface counts as inside",
+  addLength(app, "--bias", true, o.bias, "how deep behind a surface counts as inside; to march: how far above the tangent plane what stops a ray stands",
             fraction(engine::kDefaultBias, "R"))
       ->group(group);
   addChoice(app, "--silhouette-bound", onOff, o.transfer.silhouetteBound,
@@ -171,7 +182,7 @@ void addAmbient(CLI::App& app, FrameOptions& o) {
       ->group(group);
   addChoice(app, "--estimator", kEstimatorNames, o.transfer.estimator,
             "where the rays come from: one set for all pixels, a Sobol net dealt to a 4x4 pattern, or one that suits its box; "
-            "or rays through the eye, tested all along (linear membership)")
+            "rays through the eye, tested all along (linear membership); or the box's, marched through the depth map")
       ->group(group);
   addChoice(app, "--layers", {{"1", 1}, {"2", 2}}, o.transfer.layers,
             "of depth that occlude: what is seen, or also what is next behind it")

@@ -12,6 +12,7 @@
 #include "obscura/engine/camera_choice.h"
 #include "obscura/engine/frame.h"
 #include "obscura/engine/gltf.h"
+#include "obscura/engine/quality.h"
 #include "obscura/engine/result.h"
 #include "obscura/engine/scene.h"
 #include "obscura/raster/rasterizer.h"
@@ -66,11 +67,14 @@ struct FrameOptions {
   bool displacement = true;
   post::Brdf brdf = post::Brdf::Gltf;
   post::Occlusion ambient = post::Occlusion::Transfer;
-  post::AmbientSettings transfer;                          // but for three of the lengths below
+  engine::Quality quality = engine::Quality::Standard;
+  post::AmbientSettings transfer;                          // but for three of the lengths below; set by `quality`, then by options of their own
   std::optional<double> radius, bias, filterThreshold;     // scene units; empty: a fraction of the scene's size
   std::optional<double> separation;                        // of the second depth layer, alike
   raster::Settings raster;
   bool reference = false;
+
+  FrameOptions() { engine::setQuality(transfer, quality); }
 
   // Values that cannot be are refused while parsing, with a CLI::ValidationError.
   void addTo(CLI::App& app);

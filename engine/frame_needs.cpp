@@ -79,7 +79,7 @@ const char* wrongSetting(const FrameSettings& s) {
                             std::max(s.width, s.height) > raster::kMaxImageSize / s.supersample))
     return "width and height times supersample must be 1 to 16384: choose another size or less supersampling";
   if (t.samples < 1 || t.samples > 64) return "samples must be 1 to 64";
-  if (t.steps < 1 || t.steps > 4) return "steps must be 1 to 4";
+  if (t.steps < 1 || t.steps > post::kMaxSteps) return "steps must be 1 to 16";
   if (!(t.radius > 0 && t.radius < 1e30f)) return "the radius must be positive and finite";
   if (!(t.bias >= 0 && t.bias < 1e30f)) return "the bias must be 0 or more and finite";
   if (t.layers < 1 || t.layers > 2) return "layers must be 1 or 2";

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 #undef HWY_TARGET_INCLUDE
@@ -12,7 +13,9 @@
 #include <hwy/cache_control.h>
 
 #include "obscura/post/containment-inl.h"
+#include "obscura/post/open_tangent-inl.h"
 #include "obscura/post/ray_hits-inl.h"
+#include "obscura/post/ray_march-inl.h"
 #include "obscura/post/ray_points-inl.h"
 #include "obscura/post/sample_sets.h"
 #include "obscura/post/vector-inl.h"
@@ -57,7 +60,7 @@ class Kernel {
     for (int y = y0; y < y1; ++y) {
       if (in_.bounds && (y == y0 || y % DepthBounds::kCellHeight == 0))
         for (size_t column = 0; column < blocks_.size(); ++column)
-          blocks_[column] = openBlock<kPerspective>(in_, reach_, int(column), y / DepthBounds::kCellHeight);
+          blocks_[column] = blockAt(int(column), y / DepthBounds::kCellHeight);
       startRow(y);
       for (int x = 0; x < g_.width; x += kSegment) segment(x, y);
       subtractPending(y);
@@ -66,6 +69,17 @@ class Kernel {
   }
 
  private:
+  using Block = std::conditional_t<Points::kMarched, TangentBlock, OpenBlock>;
+
+  Block blockAt(int column, int row) const {
+    if constexpr (Points::kMarched) return tangentBlock<kPerspective>(in_, reach_, column, row);
+    else return openBlock<kPerspective>(in_, reach_, column, row);
+  }
+  HWY_INLINE MF isOpen(const Block& block, const Pixels& at) const {
+    if constexpr (Points::kMarched) return knownOpen<kPerspective>(block, TangentPlane<kPerspective>(in_, at), at.n);
+    else return knownOpen<kPerspective>(block, reach_, at.position, at.n, in_.settings.bias);
+  }
+
   // The pattern is that of the whole image.
   void startRow(int y) {
     const Projector& p = in_.projector;
@@ -120,12 +134,9 @@ class Kernel {
       for (int v = 0; v < kVectors; ++v) alone = !relief_.choose(x + v * kLanes, y) && alone;
     }
     if (in_.bounds) {
-      const OpenBlock& block = blocks_[size_t(x / kSegment)];
+      const Block& block = blocks_[size_t(x / kSegment)];
       bool known = block.known && alone;
-      for (int v = 0; v < kVectors && known; ++v) {
-        const MF outer = knownOpen<kPerspective>(block, reach_, pixels[v].position, pixels[v].n, in_.settings.bias);
-        known = hn::AllTrue(d, hn::Or(hn::Not(seen[v]), outer));
-      }
+      for (int v = 0; v < kVectors && known; ++v) known = hn::AllTrue(d, hn::Or(hn::Not(seen[v]), isOpen(block, pixels[v])));
       if (known) {
         statistics_.open += seenCount;
         return;
@@ -137,7 +148,9 @@ class Kernel {
       setFrame(pixels[v]);
       if (Points::kTurned) turnFrame(pixels[v], hn::LoadU(d, cosines_ + v * kLanes), hn::LoadU(d, sines_ + v * kLanes));
       if (kMore) relief_.choose(x + v * kLanes, y);
-      const VF outer = outerRays(pixels[v], x + v * kLanes);
+      VF outer;
+      if constexpr (Points::kMarched) outer = marchedRays(pixels[v], x + v * kLanes);
+      else outer = outerRays(pixels[v], x + v * kLanes);
       open &= uint8_t(hn::AllTrue(d, hn::Eq(outer, all)));
       hn::StoreU(outer, d, numerator + v * kLanes);
       if (kReads) {
@@ -169,6 +182,15 @@ class Kernel {
             hn::Neg(hn::LoadU(d, g_.normal[2].row(y) + x))};
   }
 
+  // From the pixel's point.
+  HWY_INLINE static V3 offset(const Pixels& at, const V3& xyz) {
+    auto shift = [&](VF t, VF b, VF n) HWY_ATTR { return hn::Add(hn::Add(hn::Mul(xyz.x, t), hn::Mul(xyz.y, b)), hn::Mul(xyz.z, n)); };
+    return {shift(at.t.x, at.b.x, at.n.x), shift(at.t.y, at.b.y, at.n.y), shift(at.t.z, at.b.z, at.n.z)};
+  }
+  HWY_INLINE static V3 moved(const Pixels& at, const V3& o) {
+    return {hn::Add(at.position.x, o.x), hn::Add(at.position.y, o.y), hn::Add(at.position.z, o.z)};
+  }
+
   // Counts the rays that stay outside; with kReads also notes what the others meet.
   HWY_INLINE VF outerRays(const Pixels& at, int x) {
     const DF d;
@@ -182,17 +204,48 @@ class Kernel {
       MF hit = hn::MaskFromVec(hn::Zero(d));
       VI met = hn::Zero(di);
       for (size_t k = 0; k < steps; ++k, ++point) {
-        const V3 xyz = points_.at(point, x);
-        auto shift = [&](VF t, VF b, VF n) HWY_ATTR {
-          return hn::Add(hn::Add(hn::Mul(xyz.x, t), hn::Mul(xyz.y, b)), hn::Mul(xyz.z, n));
-        };
-        const V3 o{shift(at.t.x, at.b.x, at.n.x), shift(at.t.y, at.b.y, at.n.y), shift(at.t.z, at.b.z, at.n.z)};
-        const V3 p{hn::Add(at.position.x, o.x), hn::Add(at.position.y, o.y), hn::Add(at.position.z, o.z)};
+        const V3 o = offset(at, points_.at(point, x)), p = moved(at, o);
         const VI texel = map_.texelOf(p);
         MF inner = map_.inner(p.z, texel);
         if (kMore) inner = hn::Or(inner, hn::Or(implicits_.inner(p), relief_.inner(o)));
         met = kOneStep ? texel : hn::IfThenElse(hn::RebindMask(di, hn::AndNot(hit, inner)), texel, met);
         hit = kOneStep ? inner : hn::Or(hit, inner);
+      }
+      outer = hn::IfThenElse(hit, outer, hn::Add(outer, one));
+      if (kReads) hits_.set(firstRay + i * Hits::kStride, hit, met);
+    }
+    return outer;
+  }
+
+  // The same for Estimator::March.
+  HWY_INLINE VF marchedRays(const Pixels& at, int x) {
+    const DF d;
+    const DI di;
+    const VF one = hn::Set(d, 1.0f), zero = hn::Zero(d), perStep = hn::Set(d, 1 / float(in_.settings.steps));
+    const TangentPlane<kPerspective> plane(in_, at);
+    const size_t samples = size_t(in_.settings.samples), firstRay = size_t(pendingCount_) * samples * Hits::kStride;
+    VF outer = zero;
+    for (size_t i = 0; i < samples; ++i) {
+      const V3 end = offset(at, points_.at(i, x));
+      const VF early = points_.early(i, x), shell = points_.shell(i, x);
+      MF hit = hn::MaskFromVec(zero);
+      VI met = hn::Zero(di);
+      for (int k = 1; k <= in_.settings.steps; ++k) {
+        const VF part = hn::Mul(hn::Sub(hn::Set(d, float(k)), early), perStep);
+        const V3 o{hn::Mul(end.x, part), hn::Mul(end.y, part), hn::Mul(end.z, part)}, p = moved(at, o);
+        const auto place = map_.nearest(p);
+        const VI texel = map_.element(place);
+        const VF sight = plane.along(hn::ConvertTo(d, place.column), hn::ConvertTo(d, place.row));
+        const auto within = [&](const float* depth, VF thickness) HWY_ATTR {
+          const VF stored = hn::GatherIndex(d, depth, texel), behind = hn::Sub(p.z, stored);
+          return hn::And(hn::And(hn::Gt(behind, zero), hn::Lt(behind, thickness)), plane.above(sight, stored));
+        };
+        MF inner = within(map_.depth, shell);
+        if (HWY_UNLIKELY(map_.depth2 != nullptr)) inner = hn::Or(inner, within(map_.depth2, points_.shell2(i, x)));
+        inner = hn::And(inner, hn::Gt(p.z, map_.zNear));
+        if (kMore) inner = hn::Or(inner, hn::Or(implicits_.inner(p), relief_.inner(o)));
+        if (kReads) met = hn::IfThenElse(hn::RebindMask(di, hn::AndNot(hit, inner)), texel, met);
+        hit = hn::Or(hit, inner);
       }
       outer = hn::IfThenElse(hit, outer, hn::Add(outer, one));
       if (kReads) hits_.set(firstRay + i * Hits::kStride, hit, met);
@@ -219,7 +272,7 @@ class Kernel {
   const Reach reach_;
   Implicits implicits_;
   HeightField relief_;
-  std::vector<OpenBlock> blocks_;  // of the row of cells
+  std::vector<Block> blocks_;  // of the row of cells
   TransferStatistics statistics_;
   HWY_ALIGN float cosines_[kSegment], sines_[kSegment];  // the row's rotations
   VF yRay_;
@@ -232,6 +285,10 @@ class Kernel {
 template <bool kPerspective, bool kOneStep, bool kReads>
 TransferStatistics transferRows(const TransferInput& in, int y0, int y1, TransferSums& out) {
   const bool more = !in.implicits.empty() || (!in.heights.empty() && !in.g->heightMap.empty());
+  if constexpr (!kOneStep)
+    if (in.settings.estimator == Estimator::March)
+      return more ? Kernel<MarchedRays, kPerspective, false, kReads, true>(in, out).rows(y0, y1)
+                  : Kernel<MarchedRays, kPerspective, false, kReads, false>(in, out).rows(y0, y1);
   if (in.settings.estimator != Estimator::Paper)
     return more ? Kernel<DealtPoints, kPerspective, kOneStep, kReads, true>(in, out).rows(y0, y1)
                 : Kernel<DealtPoints, kPerspective, kOneStep, kReads, false>(in, out).rows(y0, y1);
@@ -247,7 +304,7 @@ TransferStatistics transferRows(const TransferInput& in, int y0, int y1, Transfe
 }
 
 TransferStatistics AmbientTransfer(const TransferInput& in, int y0, int y1, TransferSums& out) {
-  const bool oneStep = in.settings.steps == 1;
+  const bool oneStep = in.settings.steps == 1 && in.settings.estimator != Estimator::March;
   if (in.projector.perspective)
     return oneStep ? transferRows<true, true>(in, y0, y1, out) : transferRows<true, false>(in, y0, y1, out);
   return oneStep ? transferRows<false, true>(in, y0, y1, out) : transferRows<false, false>(in, y0, y1, out);

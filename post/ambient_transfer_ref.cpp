@@ -7,6 +7,7 @@
 #include "obscura/post/ambient_transfer.h"
 #include "obscura/post/depth_map_ref.h"
 #include "obscura/post/line_samples.h"
+#include "obscura/post/ray_march.h"
 #include "obscura/post/sample_sets.h"
 #include "obscura/raster/float_environment.h"
 #include "obscura/raster/relief.h"
@@ -40,7 +41,19 @@ bool insideImplicit(const TransferInput& in, const glm::vec3& p) {
   return false;
 }
 
-void shade(const TransferInput& in, int x, int y, TransferSums& out) {
+// Whether a point at depth z is stopped by what is seen at depth `stored` at a texel: a shell that stands above the tangent
+// plane of cPos.
+bool stopped(const TransferInput& in, const glm::vec3& cPos, const glm::vec3& N, float z, Texel texel, float stored, float shell) {
+  const Projector& p = in.projector;
+  const float a = N.x * p.xInverse, b = N.y * p.yInverse, level = N.x * cPos.x + N.y * cPos.y + N.z * cPos.z + in.settings.bias;
+  float sight = a * (0.5f - p.xCenter) + b * (0.5f - p.yCenter);
+  if (p.perspective) sight += N.z;
+  sight = a * float(texel.x + p.xFirst) + b * float(texel.y + p.yFirst) + sight;
+  const float height = p.perspective ? stored * sight : sight + N.z * stored, behind = z - stored;
+  return behind > 0 && behind < shell && height > level;
+}
+
+void shade(const TransferInput& in, const std::vector<RayMarch>& marches, int x, int y, TransferSums& out) {
   const raster::GBuffer& g = *in.g;
   const Projector& projector = in.projector;
   const AmbientSettings& s = in.settings;
@@ -70,13 +83,24 @@ void shade(const TransferInput& in, int x, int y, TransferSums& out) {
   const glm::vec3 T1 = dealt ? T : T * r1.x + B * r1.y, B1 = dealt ? B : T * r1.y - B * r1.x;
 
   for (size_t i = 0; i < samples && !empty; ++i) {
-    const glm::vec3 xyz = in.offsets[dealt ? inPattern * samples + i : i];
+    const size_t ray = dealt ? inPattern * samples + i : i;
+    const glm::vec3 xyz = in.offsets[ray];
     bool outer = true;
     Texel occluder{};
     for (int k = 1; k <= s.steps && outer; ++k) {
-      const glm::vec3 o = xyz * (float(k) / float(s.steps));
-      const glm::vec3 shift = T1 * o.x + B1 * o.y + N * o.z, scPos = cPos + shift;
+      const bool march = s.estimator == Estimator::March;
+      const glm::vec3 o = march ? xyz : xyz * (float(k) / float(s.steps));
+      glm::vec3 shift = T1 * o.x + B1 * o.y + N * o.z;
+      if (march) shift *= (float(k) - marches[ray].early) * (1 / float(s.steps));
+      const glm::vec3 scPos = cPos + shift;
       occluder = project(projector, scPos);
+      if (march) {
+        bool inner = stopped(in, cPos, N, scPos.z, occluder, g.depth.at(occluder.x, occluder.y), marches[ray].shell);
+        if (s.layers == 2)
+          inner = inner || stopped(in, cPos, N, scPos.z, occluder, g.depth2.at(occluder.x, occluder.y), marches[ray].shell2);
+        outer = !(inner && scPos.z > projector.zNear) && !insideImplicit(in, scPos) && !belowRelief(in, x, y, shift);
+        continue;
+      }
       const float behind = scPos.z - g.depth.at(occluder.x, occluder.y);
       const float deepest = s.silhouetteBound ? s.radius : std::numeric_limits<float>::infinity();
       bool within = behind < deepest;
@@ -104,9 +128,11 @@ void shade(const TransferInput& in, int x, int y, TransferSums& out) {
 void ambientTransferRef(const TransferInput& in, int y0, int y1, TransferSums& out) {
   if (in.settings.estimator == Estimator::Lines) return lineSamplesRef(in, y0, y1, out);
   const raster::FloatEnvironment environment;
+  std::vector<RayMarch> marches;
+  if (in.settings.estimator == Estimator::March) marches = rayMarches(in.settings, in.offsets);
   for (int y = y0; y < y1; ++y)
     for (int x = 0; x < in.g->width; ++x) {
-      shade(in, x, y, out);
+      shade(in, marches, x, y, out);
       const uint8_t open = out.numerator.at(x, y) == float(in.settings.samples);
       out.open.at(x / kSegment, y) = x % kSegment == 0 ? open : out.open.at(x / kSegment, y) & open;
     }

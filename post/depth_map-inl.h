@@ -39,24 +39,32 @@ struct DepthMap {
     stride = hn::Set(DI(), int32_t(in.g->depth.stride()));
   }
 
-  // Element of the nearest texel, clamped to the G-buffer.
-  HWY_INLINE VI texelOf(const V3& p) const {
+  struct Texel {
+    VI column, row;  // of the image
+  };
+
+  // The nearest texel, clamped to the G-buffer.
+  HWY_INLINE Texel nearest(const V3& p) const {
     VF u = p.x, v = p.y;
     if (kPerspective) {
       const VF inverse = hn::Div(hn::Set(DF(), 1.0f), p.z);
       u = hn::Mul(u, inverse);
       v = hn::Mul(v, inverse);
     }
-    return texelAt(u, v);
+    return nearest(u, v);
   }
 
   // The same of x / z and y / z, or of x and y if the projection is orthographic.
-  HWY_INLINE VI texelAt(VF u, VF v) const {
+  HWY_INLINE Texel nearest(VF u, VF v) const {
     u = hn::Add(hn::Mul(u, xScale), xCenter);
     v = hn::Add(hn::Mul(v, yScale), yCenter);
     if (HWY_UNLIKELY(negative)) u = hn::Floor(u), v = hn::Floor(v);
-    return hn::Sub(hn::Add(hn::Mul(floorOf(v, firstY, lastY), stride), floorOf(u, firstX, lastX)), origin);
+    return {floorOf(u, firstX, lastX), floorOf(v, firstY, lastY)};
   }
+
+  HWY_INLINE VI element(const Texel& t) const { return hn::Sub(hn::Add(hn::Mul(t.row, stride), t.column), origin); }
+  HWY_INLINE VI texelOf(const V3& p) const { return element(nearest(p)); }
+  HWY_INLINE VI texelAt(VF u, VF v) const { return element(nearest(u, v)); }
 
   // Inner exactly when bias < z - z* < R; the upper bound keeps far foreground objects from casting silhouettes. Without
   // it the difference need only be finite. Behind the second layer the same, to kHiddenThickness R.

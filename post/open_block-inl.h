@@ -84,47 +84,64 @@ inline double highestOver(const DepthBounds& bounds, float a, float b, int colum
   return hn::GetLane(hn::MaxOfLanes(d, highest));
 }
 
+// The texels that points within reach of a block of pixels may be seen in, counted from the G-buffer's first.
+struct Reached {
+  struct Range {
+    double low, high;  // of the points' pixel coordinates: |u_p - u| = |xScale dx - (u - xCenter) dz| / z_p
+    int first, last;   // of the texels read
+    bool sound;
+  };
+  bool known = false;
+  double xCenter = 0, yCenter = 0;  // counted alike
+  Range u, v;
+  int column0 = 0, column1 = 0, row0 = 0, row1 = 0;  // of cells
+};
+
 template <bool kPerspective>
-OpenBlock openBlock(const TransferInput& in, const Reach& reach, int column, int row) {
-  constexpr double kOff = 0.5 + 1.0 / 64;  // from a point's pixel coordinates to its texel's centre, with roundings
+Reached reachedFrom(const TransferInput& in, const Reach& reach, int column, int row) {
   constexpr int kMostCells = 4096;         // beyond, looking costs as much as sampling
   constexpr double kFarthest = 32768;      // pixels; up to here 1/64 is enough
   const DepthBounds& bounds = *in.bounds;
   const Projector& p = in.projector;
-  // Pixel coordinates are counted from the G-buffer's first texel here.
-  const double xCenter = double(p.xCenter) - p.xFirst, yCenter = double(p.yCenter) - p.yFirst;
+  Reached out;
+  out.xCenter = double(p.xCenter) - p.xFirst, out.yCenter = double(p.yCenter) - p.yFirst;
   const float nearest = bounds.nearest.at(column, row);
   if (!(bounds.c.at(column, row) < std::numeric_limits<float>::infinity()) ||
       !(nearest < std::numeric_limits<float>::infinity()))
-    return {};
+    return out;
   const double room = kPerspective ? double(nearest) - reach.length : 1;
-  if (!(room > 0)) return {};
+  if (!(room > 0)) return out;
 
-  // Pixel coordinates that points of the block can have: |u_p - u| = |xScale dx - (u - xCenter) dz| / z_p.
-  struct Range {
-    double low, high;  // of u
-    int first, last;   // of the texels read
-    bool sound;
-  };
   const auto rangeOf = [&](int begin, int end, int size, double scale, double center) {
     const double u0 = begin + 0.5, u1 = std::min(end, size) - 0.5;
     const double aside = kPerspective ? std::max(std::fabs(u0 - center), std::fabs(u1 - center)) : 0;
     const double by = reach.length * std::sqrt(scale * scale + aside * aside) / room + 1;
-    Range r{u0 - by, u1 + by, 0, size - 1, by < kFarthest};
+    Reached::Range r{u0 - by, u1 + by, 0, size - 1, by < kFarthest};
     if (r.low > 0) r.first = int(std::min(r.low, size - 1.0));
     if (r.high < size) r.last = int(std::max(r.high, 0.0));
     return r;
   };
   const int x0 = column * DepthBounds::kCellWidth, y0 = row * DepthBounds::kCellHeight;
-  const Range u = rangeOf(x0, x0 + DepthBounds::kCellWidth, p.width, p.xScale, xCenter);
-  const Range v = rangeOf(y0, y0 + DepthBounds::kCellHeight, p.height, p.yScale, yCenter);
-  if (!u.sound || !v.sound) return {};
-  const int column0 = u.first / DepthBounds::kCellWidth, column1 = u.last / DepthBounds::kCellWidth;
-  const int row0 = v.first / DepthBounds::kCellHeight, row1 = v.last / DepthBounds::kCellHeight;
-  if ((column1 - column0 + 1) * (row1 - row0 + 1) > kMostCells) return {};
+  out.u = rangeOf(x0, x0 + DepthBounds::kCellWidth, p.width, p.xScale, out.xCenter);
+  out.v = rangeOf(y0, y0 + DepthBounds::kCellHeight, p.height, p.yScale, out.yCenter);
+  if (!out.u.sound || !out.v.sound) return out;
+  out.column0 = out.u.first / DepthBounds::kCellWidth, out.column1 = out.u.last / DepthBounds::kCellWidth;
+  out.row0 = out.v.first / DepthBounds::kCellHeight, out.row1 = out.v.last / DepthBounds::kCellHeight;
+  out.known = (out.column1 - out.column0 + 1) * (out.row1 - out.row0 + 1) <= kMostCells;
+  return out;
+}
+
+template <bool kPerspective>
+OpenBlock openBlock(const TransferInput& in, const Reach& reach, int column, int row) {
+  constexpr double kOff = 0.5 + 1.0 / 64;  // from a point's pixel coordinates to its texel's centre, with roundings
+  const DepthBounds& bounds = *in.bounds;
+  const Projector& p = in.projector;
+  const Reached at = reachedFrom<kPerspective>(in, reach, column, row);
+  if (!at.known) return {};
+  const float nearest = bounds.nearest.at(column, row);
 
   // Beyond the border the texel read may be further off, on the inner side.
-  const auto off = [&](double slope, const Range& r, int size) {
+  const auto off = [&](double slope, const Reached::Range& r, int size) {
     return std::fabs(slope) * (kOff + std::max(0.0, slope > 0 ? -r.low : r.high - size));
   };
   const float a = bounds.a.at(column, row), b = bounds.b.at(column, row), own = bounds.c.at(column, row);
@@ -133,10 +150,10 @@ OpenBlock openBlock(const TransferInput& in, const Reach& reach, int column, int
   const double gx = a * p.xScale, gy = b * p.yScale, gz = kPerspective ? a * p.xCenter + b * p.yCenter + own : 1;
   const double lift = reach.least * std::sqrt(gx * gx + gy * gy + gz * gz);
   const double most = own + 2 * (kPerspective ? (lift + in.settings.bias / nearest) / nearest : lift + in.settings.bias);
-  const double c = highestOver(bounds, a, b, column0, column1, row0, row1, float(p.width + p.height), float(most)) +
-                   off(a, u, p.width) + off(b, v, p.height);
+  const double c = highestOver(bounds, a, b, at.column0, at.column1, at.row0, at.row1, float(p.width + p.height), float(most)) +
+                   off(a, at.u, p.width) + off(b, at.v, p.height);
   if (!(c < std::numeric_limits<double>::infinity())) return {};
-  const double atCenter = double(a) * xCenter + double(b) * yCenter + c;
+  const double atCenter = double(a) * at.xCenter + double(b) * at.yCenter + c;
   OpenBlock block{true, a * p.xScale, b * p.yScale, 1, float(atCenter)};
   if (kPerspective) block.gz = block.k, block.k = 0;
   return block;

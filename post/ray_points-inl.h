@@ -18,7 +18,7 @@ namespace HWY_NAMESPACE {
 // The paper's: all pixels have the same, in a frame that is turned.
 class SharedPoints {
  public:
-  static constexpr bool kTurned = true;
+  static constexpr bool kTurned = true, kMarched = false;
 
   SharedPoints(const TransferInput& in, int steps) {
     for (const glm::vec3& offset : in.offsets)
@@ -40,7 +40,7 @@ class SharedPoints {
 // Dealt to a 4x4 pattern: in a row the lanes repeat four points, so that one load of them and a broadcast do.
 class DealtPoints {
  public:
-  static constexpr bool kTurned = false;
+  static constexpr bool kTurned = false, kMarched = false;
 
   DealtPoints(const TransferInput& in, int steps) : points_(SharedPoints(in, steps).all()), perRow_(points_.size() / 16) {
     rows_.reserve(4 * perRow_);
@@ -62,16 +62,17 @@ class DealtPoints {
     return {repeated(four.x, x), repeated(four.y, x), repeated(four.z, x)};
   }
 
- private:
-  struct Four {
-    float x[4], y[4], z[4];
-  };
-
+ protected:
   // Vectors begin at multiples of their length.
   HWY_INLINE static VF repeated(const float (&four)[4], int x) {
     if (hn::MaxLanes(DF()) < 4) return hn::LoadU(DF(), four + (x & 3));
     return hn::LoadDup128(DF(), four);
   }
+
+ private:
+  struct Four {
+    float x[4], y[4], z[4];
+  };
 
   std::vector<glm::vec3> points_;
   size_t perRow_;  // n rays of m points

@@ -27,6 +27,7 @@ enum class Estimator : uint8_t {
   Sobol,  // one scrambled Sobol net of 16 n points, dealt to the 16 pixels of the pattern (dealt_samples.h)
   Box,    // the same with the scramble that errs least over the 4x4 box
   Lines,  // rays through the eye instead, each tested all along (line_samples.h); dealt alike; linear membership only
+  March,  // the rays of Box, followed through the depth map from test point to test point (ray_march.h)
 };
 
 // What a pixel of the filter's window must have in common with the pixel itself to count.
@@ -35,12 +36,14 @@ enum class FilterGuide : uint8_t {
   Plane,  // it lies in the pixel's tangent plane, and its normal is much the same (depth_filter.h)
 };
 
+constexpr int kMaxSteps = 16;
+
 struct AmbientSettings {
   TransferAlbedo albedo = TransferAlbedo::Neighbour;
   Membership membership = Membership::Linear;
   Estimator estimator = Estimator::Paper;
   int samples = 8;               // n, 1 ... 64 per pixel
-  int steps = 1;                 // m, 1 ... 4 test points per ray
+  int steps = 1;                 // m, 1 ... kMaxSteps test points per ray
   float radius = 0.5f;           // R, scene units, > 0
   float bias = 0.005f;           // scene units, >= 0: how far behind the depth map a point must be to be inside
   bool silhouetteBound = true;   // what lies R or more behind the depth map is outside: no false silhouettes; false: inside

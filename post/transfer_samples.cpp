@@ -16,7 +16,7 @@ constexpr uint32_t kSobolSeed = 1;
 
 std::vector<glm::vec3> samplePoints(const AmbientSettings& s) {
   if (s.estimator == Estimator::Paper) return {sampleSet(s.samples).begin(), sampleSet(s.samples).end()};
-  std::vector<glm::vec3> points = dealtSamples(s.samples, s.estimator == Estimator::Box ? boxSeed(s.samples) : kSobolSeed);
+  std::vector<glm::vec3> points = dealtSamples(s.samples, s.estimator == Estimator::Box || s.estimator == Estimator::March ? boxSeed(s.samples) : kSobolSeed);
   for (size_t i = size_t(s.samples); !s.interleave && i < points.size(); ++i) points[i] = points[i - size_t(s.samples)];
   return points;
 }

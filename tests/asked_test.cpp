@@ -21,7 +21,7 @@ engine::FrameSettings settingsOf(const TestScene& scene, uint32_t seed) {
   s.transfer.albedo = post::TransferAlbedo(seed % 3);
   s.brdf = post::Brdf(seed / 3 % 4);
   s.transfer.filter = seed % 4 != 3;
-  s.transfer.estimator = post::Estimator(seed / 2 % 4);
+  s.transfer.estimator = post::Estimator(seed / 2 % 5);
   s.ambient = seed % 5 == 4 ? post::Occlusion::Obscurance : post::Occlusion::Transfer;
   return s;
 }

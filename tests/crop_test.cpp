@@ -54,7 +54,7 @@ engine::FrameSettings settingsOf(const TestScene& scene, uint32_t seed) {
   t.interleave = seed % 5 != 4;
   t.filter = seed % 7 != 6;
   t.filterThreshold = seed % 2 ? 100.f : 0.1f;
-  t.estimator = post::Estimator(seed % 4);
+  t.estimator = post::Estimator(seed % 5);
   t.layers = seed % 5 == 2 ? 2 : 1;
   if (t.estimator == post::Estimator::Lines) t.membership = post::Membership::Linear;
   t.filterGuide = seed % 4 == 1 ? post::FilterGuide::Plane : post::FilterGuide::Depth;

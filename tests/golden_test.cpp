@@ -234,7 +234,7 @@ TEST_CASE("golden: threads, targets, tile sizes, skipping and the scalar twins g
             REQUIRE(digests({count, target, tile, skip}, false) == expected);
           }
     for (const auto& [estimator, guide] : {std::pair(post::Estimator::Sobol, post::FilterGuide::Depth),
-                                           std::pair(post::Estimator::Box, post::FilterGuide::Plane),
+                                           std::pair(post::Estimator::March, post::FilterGuide::Plane),
                                            std::pair(post::Estimator::Lines, post::FilterGuide::Plane)}) {
       settings.transfer.estimator = estimator;
       settings.transfer.filterGuide = guide;

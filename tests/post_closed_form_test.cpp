@@ -157,8 +157,8 @@ TEST_CASE("corner: O of a point at distance h from a wall matches quadrature wit
   }
 }
 
-TEST_CASE("corner: dealt samples and lines estimate the same O, within 0.015 at n = 16") {
-  for (auto estimator : {post::Estimator::Sobol, post::Estimator::Box, post::Estimator::Lines}) {
+TEST_CASE("corner: dealt samples, lines and marched rays estimate the same O, within 0.015 at n = 16") {
+  for (auto estimator : {post::Estimator::Sobol, post::Estimator::Box, post::Estimator::Lines, post::Estimator::March}) {
     ClosedScene c({0.5f, 0.5f, 0.5f}, 240, 180);
     c.quad({0, 0, -4}, {0, 0, 4}, {4, 0, 4}, {4, 0, -4});
     c.quad({0, 0, -4}, {0, 4, -4}, {0, 4, 4}, {0, 0, 4});
@@ -166,6 +166,7 @@ TEST_CASE("corner: dealt samples and lines estimate the same O, within 0.015 at 
     AmbientSettings s = manySamples();
     s.estimator = estimator;
     s.samples = 16;
+    s.steps = estimator == post::Estimator::March ? 4 : 1;
     s.filterGuide = post::FilterGuide::Plane;
     c.run(s);
     for (double h : {0.1, 0.2, 0.3, 0.45, 0.6}) {
@@ -180,7 +181,8 @@ TEST_CASE("corner: dealt samples and lines estimate the same O, within 0.015 at 
 TEST_CASE("white room: W is 1 in every pixel, although O is not") {
   for (auto [albedo, estimator] : {std::pair(post::TransferAlbedo::Own, post::Estimator::Paper),
                                    std::pair(post::TransferAlbedo::Neighbour, post::Estimator::Paper),
-                                   std::pair(post::TransferAlbedo::Neighbour, post::Estimator::Lines)}) {
+                                   std::pair(post::TransferAlbedo::Neighbour, post::Estimator::Lines),
+                                   std::pair(post::TransferAlbedo::Neighbour, post::Estimator::March)}) {
     ClosedScene c({1, 1, 1});
     const glm::vec3 lo(-1, -1, -1), hi(1, 1, 1);
     c.quad({lo.x, lo.y, lo.z}, {hi.x, lo.y, lo.z}, {hi.x, hi.y, lo.z}, {lo.x, hi.y, lo.z});

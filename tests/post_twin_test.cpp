@@ -23,7 +23,7 @@ AmbientSettings settingsOf(uint32_t seed) {
   s.silhouetteBound = seed % 3 != 1;
   s.interleave = seed % 3 != 0;
   s.filter = seed % 7 != 0;
-  s.estimator = post::Estimator(seed / 2 % 4);
+  s.estimator = post::Estimator(seed / 2 % 5);
   s.layers = seed % 3 == 2 ? 2 : 1;
   s.filterGuide = seed / 3 % 2 ? post::FilterGuide::Plane : post::FilterGuide::Depth;
   s.filterThreshold = random.real(0.05f, 0.5f);
@@ -109,6 +109,16 @@ TEST_CASE("post: a twin that computes anything else is noticed") {
   CHECK(with([](AmbientSettings& m) { m.filterGuide = post::FilterGuide::Plane; }));
   CHECK(with([](AmbientSettings& m) { m.membership = post::Membership::Sqrt; }));
   CHECK(with([](AmbientSettings& m) { m.radius = 1.01f; }));
+  CHECK(with([](AmbientSettings& m) { m.estimator = post::Estimator::Box; }));
+  base.estimator = post::Estimator::March;
+  base.steps = 3;
+  runPost(right, s.camera, base, raster::Target::Auto);
+  CHECK_FALSE(noticed(base));
+  CHECK(with([](AmbientSettings& m) { m.estimator = post::Estimator::Box; }));
+  CHECK(with([](AmbientSettings& m) { m.steps = 4; }));
+  CHECK(with([](AmbientSettings& m) { m.layers = 2; }));
+  CHECK(with([](AmbientSettings& m) { m.bias = 0.02f; }));
+  CHECK(with([](AmbientSettings& m) { m.silhouetteBound = false; }));
 }
 
 TEST_CASE("display: every byte begins at its threshold, for all floats near it") {
