@@ -65,7 +65,7 @@ TEST_CASE("cli: what the command line cannot mean ends with 2 and says why") {
     w.failing(2, {"--digest", "--ambient-directional", six}, "PX/NX/PY/NY/PZ/NZ");
   w.failing(2, {"--digest", "--samples", "65"}, "1...64");
   w.failing(2, {"--digest", "--samples", "8.5"}, "1...64");
-  w.failing(2, {"--digest", "--steps", "0"}, "1...4");
+  w.failing(2, {"--digest", "--steps", "0"}, "1...16");
   w.failing(2, {"--digest", "--radius", "nan"}, "--radius");
   w.failing(2, {"--digest", "--radius", "-1"}, "--radius");
   w.failing(2, {"--digest", "--filter", "maybe"}, "on|off");

@@ -214,6 +214,7 @@ TEST_CASE("cli: every option of the ambient transfer and of the light changes th
   for (const Words& options : std::vector<Words>{{"--ambient", "off"}, {"--ambient", "obscurance"}, {"--albedo", "own"}, {"--albedo", "radiance"},
                                                  {"--silhouette-bound", "off"},
                                                  {"--ambient-directional", "1,1,1/1,1,1/1,0,1/0,0,0/1,1,1/1,1,1"},
+                                                 {"--quality", "draft"}, {"--quality", "high"}, {"--quality", "reference"}, {"--quality", "paper"},
                                                  {"--samples", "9"}, {"--steps", "2"}, {"--radius", "0.3"},
                                                  {"--membership", "classic"}, {"--membership", "sqrt"},
                                                  {"--membership", "exponential"}, {"--bias", "0.1"},
@@ -222,6 +223,22 @@ TEST_CASE("cli: every option of the ambient transfer and of the light changes th
     INFO(options[0] << " " << options[1]);
     REQUIRE(w.digests(options).at("color") != standard);
   }
+}
+
+TEST_CASE("cli: a quality is what its table says, and options of one's own go on top wherever they stand") {
+  const Workplace w;
+  const auto color = [&](const Words& options) { return w.digests(options).at("color"); };
+  const auto marched = [&](const std::string& samples, const std::string& steps, const std::string& layers) {
+    return color({"--estimator", "march", "--samples", samples, "--steps", steps, "--layers", layers, "--filter-guide", "plane"});
+  };
+  CHECK(color({}) == marched("4", "3", "1"));
+  CHECK(color({"--quality", "draft"}) == marched("1", "2", "1"));
+  CHECK(color({"--quality", "standard"}) == marched("4", "3", "1"));
+  CHECK(color({"--quality", "high"}) == marched("8", "8", "1"));
+  CHECK(color({"--quality", "reference"}) == marched("16", "8", "2"));
+  CHECK(color({"--quality", "paper"}) == color({"--estimator", "paper", "--samples", "8", "--steps", "1", "--filter-guide", "depth"}));
+  CHECK(color({"--quality", "paper", "--samples", "3"}) == color({"--samples", "3", "--quality", "paper"}));
+  CHECK(color({"--quality", "paper", "--samples", "3"}) != color({"--quality", "paper"}));
 }
 
 TEST_CASE("cli: the lengths' defaults are the stated fractions of the scene's size") {
@@ -233,12 +250,12 @@ TEST_CASE("cli: the lengths' defaults are the stated fractions of the scene's si
       out << v;
       return out.str();
     };
-    return w.digests({"--radius", text(radius), "--bias", text(bias), "--filter-threshold", text(threshold),
+    return w.digests({"--quality", "paper", "--radius", text(radius), "--bias", text(bias), "--filter-threshold", text(threshold),
                       "--size", "240x200"}).at("color");
   };
   const double r = 0.04 * std::sqrt(12.0);  // of the diagonal of 2 x 2 x 2
   const std::string stated = color(r, 0.01 * r, 0.2 * r);
-  REQUIRE(stated == w.digests({"--size", "240x200"}).at("color"));
+  REQUIRE(stated == w.digests({"--quality", "paper", "--size", "240x200"}).at("color"));
   REQUIRE(stated != color(1.2 * r, 0.01 * r, 0.2 * r));
   REQUIRE(stated != color(r, 0.02 * r, 0.2 * r));
   REQUIRE(stated != color(r, 0.01 * r, 0.3 * r));

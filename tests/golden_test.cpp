@@ -18,6 +18,7 @@
 #include "obscura/engine/ambient_directions.h"
 #include "obscura/engine/camera_choice.h"
 #include "obscura/engine/extended_ambient.h"
+#include "obscura/engine/quality.h"
 #include "obscura/engine/gltf.h"
 #include "obscura/engine/image_file.h"
 #include "obscura/raster/parallel.h"
@@ -206,6 +207,12 @@ TEST_CASE("golden: the same with thresholded highlights of Blinn-Phong, lit by s
   s.brdf = post::Brdf::BlinnPhongThresholded;
   s.ambientDirections = engine::cubeOf({glm::vec3{1, 0.5f, 0.5f}, {0.5f, 1, 0.5f}, {1.2f, 1.2f, 1.2f}, {0.1f, 0.1f, 0.2f}, {0.5f, 0.5f, 1}, {1, 1, 0.2f}});
   checkGolden("blinn_phong", s, scene);
+}
+
+TEST_CASE("golden: the demo scene by the standard quality, rays marched through the depth map") {
+  engine::FrameSettings s = frameOf(160, 120);
+  engine::setQuality(s.transfer, engine::Quality::Standard);
+  checkGolden("standard", s);
 }
 
 TEST_CASE("golden: the demo scene with 4 x 4 sub-pixels a pixel") {
