@@ -9,8 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "obscura/apps/bench_scenes.h"
+#include "obscura/apps/error_output.h"
+#include "obscura/apps/gnuplot.h"
 #include "obscura/apps/option_text.h"
-#include "obscura/apps/svg_plot.h"
 #include "obscura/engine/image_file.h"
 #include "obscura/raster/view.h"
 
@@ -105,13 +106,8 @@ void ScalingBenchmark::addTo(CLI::App& app, int& status) {
   command->add_option("--seconds", seconds, "measured for each cell, at least three frames")
       ->check(CLI::Range(0.001, 60.0))
       ->capture_default_str();
-  command->add_option("--plot", plot, "draw the figures, too")
-      ->type_name("FILE.svg")
-      ->check([](const std::string& path) {
-        return path.size() > 4 && path.compare(path.size() - 4, 4, ".svg") == 0
-                   ? std::string()
-                   : "\"" + path + "\" does not end in .svg";
-      });
+  command->add_option("--plot", plot, "all of it, by gnuplot: .svg, .png, or .gp for its script")
+      ->check(wrongPlotFile)->type_name("FILE");
   command->add_flag("--json", json, "one JSON object instead of tables");
   command->callback([this, &status] { status = guarded([this] { return run(); }); });
 }
@@ -219,10 +215,52 @@ void ScalingBenchmark::printJson(const std::vector<Sweep>& sweeps) const {
   std::printf("%s\n", out.dump().c_str());
 }
 
+namespace {
+
+struct Curve {
+  std::string name;
+  std::vector<std::pair<double, double>> points;
+};
+
+struct Panel {
+  std::string title, x, y;
+  std::vector<Curve> curves;
+};
+
+// Both axes logarithmic.
+std::string scriptOf(const std::string& terminal, const std::vector<Panel>& panels) {
+  std::string script = "set terminal " + terminal + " size 1000,700 background rgb \"white\"\nset logscale xy\nset format x \"%.0s%c\"\n"
+                       "set grid lc rgb \"#dddddd\"\nset key left top\nset rmargin 4\nset multiplot layout 2,2\n";
+  for (size_t p = 0; p < panels.size(); ++p) {
+    std::string plots;
+    double least[2] = {1e300, 1e300}, most[2] = {0, 0};
+    for (size_t c = 0; c < panels[p].curves.size(); ++c) {
+      const Curve& curve = panels[p].curves[c];
+      if (curve.points.empty()) continue;
+      const std::string block = "$panel" + std::to_string(p) + "curve" + std::to_string(c);
+      script += block + " << EOD\n";
+      for (const auto& [x, y] : curve.points) {
+        script += formatted("%.6g %.6g\n", x, y);
+        least[0] = std::min(least[0], x), most[0] = std::max(most[0], x);
+        least[1] = std::min(least[1], y), most[1] = std::max(most[1], y);
+      }
+      script += "EOD\n";
+      plots += (plots.empty() ? "plot " : ", ") + block + " with linespoints title " + gnuplotText(curve.name);
+    }
+    if (plots.empty()) continue;  // nothing fitted into memory
+    script += gnuplotLogAxis("x", least[0], most[0]) + gnuplotLogAxis("y", least[1], most[1]);
+    script += "set title " + gnuplotText(panels[p].title) + "\nset xlabel " + gnuplotText(panels[p].x) + "\nset ylabel " +
+              gnuplotText(panels[p].y) + "\n" + plots + "\n";
+  }
+  return script + "unset multiplot\n";
+}
+
+}  // namespace
+
 int ScalingBenchmark::writePlot(const std::vector<Sweep>& sweeps) const {
   using Figure = double (*)(const Cell&);
   const auto series = [&](const char* name, size_t sweep, bool unique, Figure x, Figure y) {
-    PlotSeries s{name, {}, false};
+    Curve s{name, {}};
     for (const Cell& c : sweeps[sweep].cells)
       if (c.skipped.empty() && c.unique == unique) s.points.emplace_back(x(c), y(c));
     return s;
@@ -235,7 +273,7 @@ int ScalingBenchmark::writePlot(const std::vector<Sweep>& sweeps) const {
   const Figure tiles = [](const Cell& c) { return c.m.times.tiles.median; };
   const Figure peak = [](const Cell& c) { return c.m.peakMb; };
   const std::string size = std::to_string(width) + "x" + std::to_string(height);
-  std::vector<PlotPanel> panels = {
+  std::vector<Panel> panels = {
       {"Time by triangles, " + size,
        "triangles",
        "ms",
@@ -251,15 +289,12 @@ int ScalingBenchmark::writePlot(const std::vector<Sweep>& sweeps) const {
        {series("frame", 1, false, pixels, frame), series("setup", 1, false, pixels, setup),
         series("tiles", 1, false, pixels, tiles)}},
       {"Time by threads, " + size, "threads", "ms", {series("frame", 2, false, threadCount, frame)}}};
-  PlotSeries ideal{"in proportion", {}, true};
-  const auto& measured = panels[3].series[0].points;
+  Curve ideal{"in proportion", {}};
+  const auto& measured = panels[3].curves[0].points;
   for (const auto& [x, y] : measured) ideal.points.emplace_back(x, measured[0].second * measured[0].first / x);
-  panels[3].series.push_back(ideal);
-  const std::string svg = svgOf("obscura: G-buffer of depth, normal and albedo", panels, 2);
-  const auto written = engine::writeFileAtomically(plot, {reinterpret_cast<const uint8_t*>(svg.data()), svg.size()});
-  if (written) return 0;
-  std::fprintf(stderr, "obscura-bench: error: %s\n", written.error().text().c_str());
-  return 4;
+  panels[3].curves.push_back(ideal);
+  const auto written = writeGnuplot(plot, [&](const std::string& terminal) { return scriptOf(terminal, panels); });
+  return written ? 0 : fail(written.error());
 }
 
 int ScalingBenchmark::run() {

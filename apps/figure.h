@@ -30,7 +30,6 @@ struct FigureContent {
   int columns = 1;  // of panels
   FigureTable numbers;
   std::vector<FigureClaim> claims;
-  std::string svg;  // the same as a drawing; may be empty
 };
 
 struct Figure {

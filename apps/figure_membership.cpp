@@ -4,7 +4,6 @@
 #include "obscura/apps/drawing.h"
 #include "obscura/apps/figure_stage.h"
 #include "obscura/apps/setting_names.h"
-#include "obscura/apps/svg_plot.h"
 #include "obscura/post/transfer_samples.h"
 
 namespace obscura::apps {
@@ -21,29 +20,26 @@ FigureContent makeMembershipFigure(const FigureSettings& settings) {
   FigureContent out;
   out.columns = 2;
   out.numbers.columns = {"d / R"};
-  std::vector<PlotPanel> panels;
   bool atEnds = true, grows = true, inverts = true;
   for (const auto& kind : kKinds) {
     out.numbers.columns.push_back(nameOf(kMembershipNames, kind.membership));
-    PlotSeries curve{"mu(d)", {}, false};
+    std::vector<std::pair<double, double>> curve;  // d / R, mu
     for (int i = 0; i <= kSteps * 5 / 4; ++i) {
       const double d = double(i) / kSteps, mu = post::membershipOf(kind.membership, d);
-      if (!curve.points.empty()) grows &= mu >= curve.points.back().second;
+      if (!curve.empty()) grows &= mu >= curve.back().second;
       // A step is drawn upright.
-      if (!curve.points.empty() && mu - curve.points.back().second > 0.5) curve.points.emplace_back(d, curve.points.back().second);
-      curve.points.emplace_back(d, mu);
+      if (!curve.empty() && mu - curve.back().second > 0.5) curve.emplace_back(d, curve.back().second);
+      curve.emplace_back(d, mu);
       if (mu > 0 && mu < 1) inverts &= std::fabs(post::inverseMembership(kind.membership, mu) - d) < 1e-9;
     }
-    atEnds &= curve.points.front().second == 0 && post::membershipOf(kind.membership, 1) == 1;
-    out.panels.push_back({kind.title, curvePicture(curve.points, {"R", "1", "d", "mu"}, settings.width, settings.height)});
-    panels.push_back({kind.title, "d / R", "mu", {std::move(curve)}, false});
+    atEnds &= curve.front().second == 0 && post::membershipOf(kind.membership, 1) == 1;
+    out.panels.push_back({kind.title, curvePicture(curve, {"R", "1", "d", "mu"}, settings.width, settings.height)});
   }
   for (int i = 0; i <= kSteps * 5 / 4; i += 5) {
     std::vector<std::string> row = {number(double(i) / kSteps)};
     for (const auto& kind : kKinds) row.push_back(number(post::membershipOf(kind.membership, double(i) / kSteps)));
     out.numbers.rows.push_back(std::move(row));
   }
-  out.svg = svgOf("Fuzzy measures of openness", panels, 2);
   out.claims = {{"each is 0 at d = 0 and 1 from d = R on", atEnds},
                 {"none of them falls anywhere", grows},
                 {"the distance drawn for mu(d) is d: samples are spread as the derivative of mu", inverts}};

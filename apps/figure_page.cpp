@@ -42,7 +42,6 @@ std::string sectionOf(const MadeFigure& made) {
   out += "</ul>\n<details><summary>Numbers</summary>\n<table>\n" + cells("th", made.content.numbers.columns);
   for (const std::vector<std::string>& row : made.content.numbers.rows) out += cells("td", row);
   out += "</table>\n<p><a href=\"" + name + ".csv\">" + name + ".csv</a>";
-  if (!made.content.svg.empty()) out += ", <a href=\"" + name + ".svg\">" + name + ".svg</a>";
   return out + "</p>\n</details>\n</section>\n";
 }
 

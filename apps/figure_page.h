@@ -13,7 +13,7 @@ struct MadeFigure {
   FigureContent content;  // the panels are not read
 };
 
-// Of the whole page; pictures are NAME.png beside it, numbers NAME.csv, drawings NAME.svg.
+// Of the whole page; pictures are NAME.png beside it, numbers NAME.csv.
 std::string pageOf(const std::vector<MadeFigure>& figures);
 
 // Lines end with \n; cells that hold a comma or a quote are quoted (RFC 4180).

@@ -32,7 +32,7 @@ constexpr const char* kFiguresExamples = R"(Examples:
   obscura figures -o figures --only snow --size 800x600
   obscura figures --list
 
-Each becomes NAME.png and NAME.csv, some NAME.svg; index.html shows those of this run. What a figure argues is checked
+Each becomes NAME.png and NAME.csv; index.html shows those of this run. What a figure argues is checked
 with its numbers, and printed.
 
 Exit codes: 0 done, 1 a figure does not show what it argues, 2 usage, 3 bad input, 4 cannot write, 128+n ended by signal n.
@@ -51,8 +51,6 @@ Result<Done> writeFiles(const std::string& stem, const FigureContent& content) {
     return error;
   }
   if (const auto done = engine::writeFileAtomically(stem + ".png", *png); !done) return done;
-  if (!content.svg.empty())
-    if (const auto done = writeText(stem + ".svg", content.svg); !done) return done;
   return writeText(stem + ".csv", csvOf(content.numbers));
 }
 

@@ -3,6 +3,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -45,6 +46,19 @@ std::string gnuplotText(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) out += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c >= ' ' ? c : ' ');
   return out + "\"";
+}
+
+std::string gnuplotLogAxis(const char* name, double least, double most) {
+  char line[128];
+  least = std::max(least, 1e-9) / 1.15, most = std::max(most, 1e-9) * 1.15;
+  std::snprintf(line, sizeof line, "set %srange [%.6g:%.6g]\nset %stics (", name, least, most, name);
+  std::string out = line;
+  for (int power = -9; power <= 9; ++power)
+    for (const int digit : {1, 2, 5}) {
+      std::snprintf(line, sizeof line, "%s%de%d", out.back() == '(' ? "" : ", ", digit, power);
+      out += line;
+    }
+  return out + ")\n";
 }
 
 engine::Result<engine::Done> writeGnuplot(const std::string& path, const std::function<std::string(const std::string&)>& script) {

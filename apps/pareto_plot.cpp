@@ -20,20 +20,6 @@ void addBlock(std::string& script, const std::string& name, const Points& points
   script += "EOD\n";
 }
 
-// An axis that ends where the points do, with a number at 1, 2 and 5 of every power of ten.
-std::string axis(const char* name, double least, double most) {
-  char line[128];
-  least = std::max(least, 1e-9) / 1.15, most = std::max(most, 1e-9) * 1.15;
-  std::snprintf(line, sizeof line, "set %srange [%.6g:%.6g]\nset %stics (", name, least, most, name);
-  std::string out = line;
-  for (int power = -9; power <= 9; ++power)
-    for (const int digit : {1, 2, 5}) {
-      std::snprintf(line, sizeof line, "%s%de%d", out.back() == '(' ? "" : ", ", digit, power);
-      out += line;
-    }
-  return out + ")\n";
-}
-
 void addPanel(std::string& script, const ParetoScene& scene, const std::string& truth, int number) {
   std::map<std::string, Points> series;
   Points front;
@@ -65,7 +51,7 @@ void addPanel(std::string& script, const ParetoScene& scene, const std::string& 
       least[0] = std::min(least[0], x), most[0] = std::max(most[0], x);
       least[1] = std::min(least[1], y), most[1] = std::max(most[1], y);
     }
-  script += axis("x", least[0], most[0]) + axis("y", least[1], most[1]);
+  script += gnuplotLogAxis("x", least[0], most[0]) + gnuplotLogAxis("y", least[1], most[1]);
   const std::string base = scene.file.substr(scene.file.find_last_of('/') + 1);
   script += "set title " + gnuplotText(base + ": " + truth + " by ray tracing, " + std::to_string(scene.width) + "x" + std::to_string(scene.height)) +
             " noenhanced\n" + plots + ", \\\n     $" + prefix + "front using 1:2 with lines lw 5 lc rgb \"#60000000\" title \"Pareto front\"\n";
