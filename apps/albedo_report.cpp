@@ -49,9 +49,9 @@ std::string scriptOf(const std::string& terminal, const std::vector<AlbedoScene>
 }  // namespace
 
 std::string tableOf(const AlbedoScene& s) {
-  std::string out = s.file + formatted(", %dx%d, R = %g, %s membership; depth map: %s, n = %d\n", s.width, s.height, double(s.settings.radius),
+  std::string out = s.file + formatted(", %dx%d, R = %g, %s membership; depth map: %s, n = %d, m = %d\n", s.width, s.height, double(s.settings.radius),
                                        nameOf(kMembershipNames, s.settings.membership).c_str(),
-                                       nameOf(kEstimatorNames, s.settings.estimator).c_str(), s.settings.samples);
+                                       nameOf(kEstimatorNames, s.settings.estimator).c_str(), s.settings.samples, s.settings.steps);
   out += formatted("truth: recursive W, %d rays a pixel; its standard error by albedo:", s.rays);
   for (const auto& t : s.truths) out += " " + t.name + formatted(" %.5f", t.error);
   out += formatted("\n\n%4s %-7s %-10s %-10s %8s %8s %8s %8s %8s\n", "row", "albedo", "O, B by", "W", "rmse", "bias", "p95", "max", "ssim");
@@ -83,7 +83,7 @@ std::string jsonOf(const std::vector<AlbedoScene>& scenes) {
     nlohmann::ordered_json scene = {{"scene", s.file}, {"size", {s.width, s.height}}, {"radius", s.settings.radius},
                                     {"membership", nameOf(kMembershipNames, s.settings.membership)},
                                     {"estimator", nameOf(kEstimatorNames, s.settings.estimator)},
-                                    {"samples", s.settings.samples}, {"truth_rays", s.rays}};
+                                    {"samples", s.settings.samples}, {"steps", s.settings.steps}, {"truth_rays", s.rays}};
     for (const auto& t : s.truths) scene["truths"].push_back({{"albedo", t.name}, {"key", t.key}, {"standard_error", t.error}});
     for (size_t k = 0; k < s.rows.size(); ++k) {
       const AlbedoRow& r = s.rows[k];

@@ -19,7 +19,7 @@ void AlbedoBenchmark::addTo(CLI::App& app, int& status) {
   c->add_option("scenes", scenes, "one or more .gltf or .glb files")->required();
   options.addTo(*c);
   removeEstimatorOptions(*c, options,
-                         {"--radius", "--membership", "--bias", "--silhouette-bound", "--filter-threshold", "--samples", "--steps",
+                         {"--quality", "--radius", "--membership", "--bias", "--silhouette-bound", "--filter-threshold", "--samples", "--steps",
                           "--estimator", "--layers", "--interleave", "--filter", "--filter-guide"});
   c->add_option("--albedo", albedos, "of every surface, from 0 to 1, in place of the scene's; \"scene\": its own colours")
       ->delimiter(',')->allow_extra_args(false)->type_name("NUMBER|scene,...")->capture_default_str()

@@ -18,7 +18,7 @@ void IrradianceBenchmark::addTo(CLI::App& app, int& status) {
   CLI::App* c = app.add_subcommand("irradiance", "An environment's diffuse light, nine coefficients times O or W, by the traced truth");
   c->add_option("scene", scene, "a .gltf or .glb file")->required();
   options.addTo(*c);
-  std::vector<std::string> kept = {"--radius", "--membership", "--bias", "--silhouette-bound", "--filter-threshold", "--samples", "--steps",
+  std::vector<std::string> kept = {"--quality", "--radius", "--membership", "--bias", "--silhouette-bound", "--filter-threshold", "--samples", "--steps",
                                    "--estimator", "--layers", "--interleave", "--filter", "--filter-guide", "--albedo"};
   kept.insert(kept.end(), kEnvironmentOptions.begin(), kEnvironmentOptions.end());
   removeEstimatorOptions(*c, options, kept);
@@ -64,9 +64,9 @@ std::string tableOf(const std::vector<IrradianceRow>& rows) {
 std::string IrradianceBenchmark::headOf(const TracedFrame& traced, const SceneTruth& found) const {
   const post::AmbientSettings& t = traced.resolved.frame.transfer;
   std::string out = scene + " in " + options.environment.file +
-                    formatted(", %dx%d, R = %g, %s membership; depth map: %s, n = %d\ntruth: irradiance / pi, %d rays a pixel; its standard error:",
+                    formatted(", %dx%d, R = %g, %s membership; depth map: %s, n = %d, m = %d\ntruth: irradiance / pi, %d rays a pixel; its standard error:",
                               traced.frame.width, traced.frame.height, double(t.radius), nameOf(kMembershipNames, t.membership).c_str(),
-                              nameOf(kEstimatorNames, t.estimator).c_str(), t.samples, truth.rays);
+                              nameOf(kEstimatorNames, t.estimator).c_str(), t.samples, t.steps, truth.rays);
   const auto seen = seenOf(traced.frame, scene);
   for (const auto& [name, red] : kLightTruthNames) {
     const raster::Plane<float>* error = &found.truth.error[size_t(red)];

@@ -28,7 +28,7 @@ struct Start {
 class Steps {
  public:
   Steps(const engine::Scene& scene, const ResolvedFrame& resolved, const engine::Frame& frame, int rays)
-      : scene_(scene), settings_(resolved.frame), frame_(frame), rays_(rays), threads_(resolved.raster.threads),
+      : settings_(resolved.frame), frame_(frame), rays_(rays), threads_(resolved.raster.threads),
         parallel_(resolved.raster.threads),
         projector_(post::makeProjector(settings_.camera, frame.imageWidth, frame.imageHeight)),
         surface_(scene, settings_.camera), starts_(scene, surface_, settings_, frame) {}
@@ -201,7 +201,6 @@ class Steps {
     return out;
   }
 
-  const engine::Scene& scene_;
   const engine::FrameSettings& settings_;
   const engine::Frame& frame_;
   int rays_, threads_;
