@@ -1,4 +1,5 @@
-// Runs obscura-bench as a child process.
+// Runs obscura-bench as a child process. What run_program.h runs: a file that includes this cannot share a test program with those
+// that run another one.
 #pragma once
 
 #undef OBSCURA_PROGRAM

@@ -1,8 +1,5 @@
 // obscura-bench on tiny sizes: what it prints is complete, and its own scenes are what they claim to be.
-// What run_program.h runs; so this file cannot share a test program with those that run another.
-#undef OBSCURA_PROGRAM
-#define OBSCURA_PROGRAM OBSCURA_BIN_DIR "/obscura-bench"
-#include <catch2/catch.hpp>
+#include "bench_program.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,30 +10,16 @@
 #include <tuple>
 
 #include <glm/geometric.hpp>
-#include <nlohmann/json.hpp>
 
 #include "obscura/apps/bench_measure.h"
 #include "obscura/apps/bench_scenes.h"
 #include "obscura/raster/rasterizer.h"
-#include "cli_scene.h"
 #include "obscura/raster/target.h"
-#include "run_program.h"
 
 using namespace obscura;
-using Json = nlohmann::json;
+using namespace obscura::tests;
 
 namespace {
-
-// What the program prints with --json.
-Json printed(std::vector<std::string> words) {
-  words.push_back("--json");
-  const Finished f = runProgram(words);
-  INFO(f.err);
-  REQUIRE(f.code == 0);
-  Json out = Json::parse(f.out, nullptr, false);
-  REQUIRE(out.is_object());
-  return out;
-}
 
 size_t count(const std::string& text, const std::string& part) {
   size_t n = 0;
@@ -145,7 +128,7 @@ TEST_CASE("bench: pixels that differ end with exit code 1, what is impossible wi
 
 TEST_CASE("bench: raster measures every cell size by every instruction set, all with the reference's digest") {
   for (const char* projection : {"perspective", "orthographic"}) {
-    const Json out = printed({"raster", "--width", "70", "--height", "45", "--frames", "2", "--cell", "1,3,64",
+    const Json out = printedBy({"raster", "--width", "70", "--height", "45", "--frames", "2", "--cell", "1,3,64",
                               "--threads", "2", "--projection", projection});
     CHECK(out["size"] == Json({70, 45}));
     CHECK(out["threads"] == 2);
@@ -180,7 +163,7 @@ TEST_CASE("bench: raster prints one row a cell size, and only the target asked f
 
 TEST_CASE("bench: scaling sweeps triangles, pixels and threads, and one scene has one digest") {
   const TemporaryFolder folder;
-  const Json out = printed({"scaling", "--most-triangles", "3e5", "--most-pixels", "250x170", "--size", "64x48",
+  const Json out = printedBy({"scaling", "--most-triangles", "3e5", "--most-pixels", "250x170", "--size", "64x48",
                             "--seconds", "0.001", "--plot", folder / "plot.gp"});
   const Json& triangles = out["triangles"];
   REQUIRE(triangles.size() == 5);  // 10^3, 10^4, 10^5, 3 10^5, and the last without instances
@@ -212,7 +195,7 @@ TEST_CASE("bench: scaling sweeps triangles, pixels and threads, and one scene ha
 }
 
 TEST_CASE("bench: transfer has a line for each number of samples with and without interleaving") {
-  const Json out = printed({"transfer", "--size", "200x150", "--frames", "2", "--samples", "1,3", "--threads", "2"});
+  const Json out = printedBy({"transfer", "--size", "200x150", "--frames", "2", "--samples", "1,3", "--threads", "2"});
   CHECK(out["size"] == Json({200, 150}));
   REQUIRE(out["cells"].size() == 4);
   std::set<std::string> digests;
@@ -239,7 +222,6 @@ TEST_CASE("bench: transfer has a line for each number of samples with and withou
 }
 
 TEST_CASE("bench: nonsense ends with exit code 2 and a plot that cannot be written with 4") {
-  using Words = std::vector<std::string>;
   for (const Words& words :
        {Words{}, Words{"nonsense"}, Words{"raster", "--width", "0"}, Words{"raster", "--height", "4097"},
         Words{"raster", "--target", "mmx"}, Words{"raster", "--cell", "0"}, Words{"raster", "--frames", "-3"},
@@ -247,13 +229,8 @@ TEST_CASE("bench: nonsense ends with exit code 2 and a plot that cannot be writt
         Words{"scaling", "--most-pixels", "100"}, Words{"scaling", "--most-pixels", "16385x1"},
         Words{"scaling", "--size", "4x4x4"}, Words{"scaling", "--plot", "plot.jpg"},
         Words{"scaling", "--seconds", "0"}, Words{"transfer", "--samples", "0"},
-        Words{"transfer", "--interleave", "on"}}) {
-    const Finished f = runProgram(words);
-    INFO((words.empty() ? "" : words.back()));
-    CHECK(f.code == 2);
-    CHECK(f.out.empty());
-    CHECK(!f.err.empty());
-  }
+        Words{"transfer", "--interleave", "on"}})
+    checkFails(words, 2);
   const Finished f = runProgram({"scaling", "--most-triangles", "1e3", "--most-pixels", "8x8", "--size", "8x8",
                                  "--seconds", "0.001", "--plot", "/nonexistent/plot.svg"});
   CHECK(f.code == 4);
@@ -272,7 +249,7 @@ TEST_CASE("bench: llvmpipe draws the same picture, or its absence is said and en
     return;
   }
   for (const char* line : {"G-buffer", "transfer", "filter, light", "frame", "pictures"}) CHECK(table.out.find(line) != table.out.npos);
-  const Json out = printed(words);
+  const Json out = printedBy(words);
   REQUIRE(out["stages"].size() == 4);
   for (const Json& stage : out["stages"]) CHECK((stage["obscura_ms"] > 0 && stage["peer_ms"] > 0 && stage["ratio"] > 0));
   CHECK(out["difference"]["rms"] < 0.03);  // what a few pixels on edges differ by
