@@ -4,6 +4,7 @@
 #include <cmath>
 #include <new>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "obscura/engine/environment_cache.h"
@@ -21,8 +22,8 @@ Environment environmentOf(const EnvironmentMap& map, EnvironmentParts parts, ras
   // both interpolate.
   const double side = 0.53 * std::sqrt(usedTexels(map.projector()));
   const int n = std::min(4096, std::max(1, int(std::ceil(side))));
-  const EnvironmentMap cube = convertEnvironment(map, {EnvironmentProjection::Cube, n, n}, parallel);
-  out.cubes = parts == EnvironmentParts::Reflections ? prefiltered(cube, parallel) : mirrorOf(cube);
+  EnvironmentMap cube = convertEnvironment(map, {EnvironmentProjection::Cube, n, n}, parallel);
+  out.cubes = parts == EnvironmentParts::Reflections ? prefiltered(std::move(cube), parallel) : mirrorOf(std::move(cube));
   return out;
 }
 

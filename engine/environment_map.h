@@ -5,12 +5,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <vector>
+#include <utility>
 
 #include <glm/vec3.hpp>
 
 #include "obscura/engine/environment_projection.h"
 #include "obscura/engine/image.h"
+#include "obscura/engine/large_vector.h"
 #include "obscura/engine/result.h"
 #include "obscura/raster/parallel.h"
 #include "obscura/raster/span.h"
@@ -29,7 +30,8 @@ class EnvironmentMap {
   const EnvironmentProjector& projector() const { return projector_; }
 
   // Panel by panel, row by row, with the border; of a cube as post::EnvironmentChain has them.
-  raster::Span<const glm::vec3> texels() const { return texels_; }
+  raster::Span<const glm::vec3> texels() const { return {texels_.data(), texels_.size()}; }
+  LargeVector<glm::vec3> taken() && { return std::move(texels_); }  // the same
 
   // Texels from -1 to width and height: the border counts.
   const glm::vec3& at(int panel, int x, int y) const { return texels_[index(panel, x, y)]; }
@@ -56,7 +58,7 @@ class EnvironmentMap {
   void fillCubeCorners();
 
   EnvironmentProjector projector_;
-  std::vector<glm::vec3> texels_;
+  LargeVector<glm::vec3> texels_;
 };
 
 // Each texel is the mean of as many points of `from` as that is finer (at most 16 x 16): 1 at about equal sizes.

@@ -104,6 +104,24 @@ glm::dvec3 EnvironmentProjector::directionAt(const PanelPoint& p) const {
   return {};
 }
 
+TexelDirections::TexelDirections(const EnvironmentProjector& projector) : projector_(projector) {
+  if (projector.projection != Projection::Latlong) return;
+  for (int x = 0; x < projector.width; ++x) {
+    const double longitude = (2 * (x + 0.5) / projector.width - 1) * kPi;
+    longitudes_.push_back({raster::exactSin(longitude), raster::exactCos(longitude)});
+  }
+  for (int y = 0; y < projector.height; ++y) {
+    const double latitude = (1 - 2 * (y + 0.5) / projector.height) * (0.5 * kPi);
+    latitudes_.push_back({raster::exactSin(latitude), raster::exactCos(latitude)});
+  }
+}
+
+glm::dvec3 TexelDirections::at(int panel, int x, int y) const {
+  if (longitudes_.empty()) return projector_.directionAt({panel, x + 0.5, y + 0.5});
+  const Angle &longitude = longitudes_[size_t(x)], &latitude = latitudes_[size_t(y)];
+  return {longitude.sine * latitude.cosine, latitude.sine, -longitude.cosine * latitude.cosine};
+}
+
 bool EnvironmentProjector::shows(int x, int y) const {
   if (projection == Projection::Latlong || projection == Projection::Cube) return x >= 0 && x < width && y >= 0 && y < height;
   const double s = (2.0 * x + 1) / width - 1, t = (2.0 * y + 1) / height - 1;

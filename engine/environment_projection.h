@@ -18,6 +18,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -53,6 +54,21 @@ struct EnvironmentProjector {
   int imageWidth() const;
   int imageHeight() const;
   glm::ivec2 originOf(int panel) const;  // of its first texel
+};
+
+// The directions of all texels' centres: the bits of directionAt(), which takes long for a latlong map's, whose columns and rows
+// share their angles.
+class TexelDirections {
+ public:
+  explicit TexelDirections(const EnvironmentProjector& projector);
+  glm::dvec3 at(int panel, int x, int y) const;
+
+ private:
+  struct Angle {
+    double sine, cosine;
+  };
+  EnvironmentProjector projector_;
+  std::vector<Angle> longitudes_, latitudes_;  // of a latlong map
 };
 
 // The projector of an image of this size; empty if no map of that projection has it.

@@ -52,13 +52,16 @@ Result<std::vector<uint8_t>> readBytes(const std::string& path, uint64_t limit) 
   // The size is only a hint (pipes have none, files may grow); one byte more finds the end in one round.
   size_t room = S_ISREG(info.st_mode) && uint64_t(info.st_size) < limit ? size_t(info.st_size) + 1 : 1 << 16;
   for (size_t size = 0;;) {
-    bytes.resize(size + room);
-    const ssize_t n = read(fd, bytes.data() + size, room);
+    if (size == bytes.size()) bytes.resize(size + room);
+    const ssize_t n = read(fd, bytes.data() + size, bytes.size() - size);
     if (n < 0 && errno != EINTR) return failed();
     size += n > 0 ? size_t(n) : 0;
-    if (n == 0) return bytes.resize(size), bytes;
+    if (n == 0) {
+      bytes.resize(size);
+      return bytes;
+    }
     if (size > limit) return codec::badImage(path, "file too large: more than " + std::to_string(limit) + " bytes");
-    room = std::max<size_t>(bytes.size() - size, 1 << 16);
+    room = std::max<size_t>(size, 1 << 16);
   }
 }
 

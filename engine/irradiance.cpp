@@ -27,13 +27,13 @@ void addTexel(const glm::dvec3& radiance, const glm::dvec3& d, Harmonics& sum) {
 }
 
 // What a row of a panel adds. Texels on the rim of a circle count with the part inside of it.
-Harmonics ofRow(const EnvironmentMap& map, int panel, int y) {
+Harmonics ofRow(const EnvironmentMap& map, const TexelDirections& directions, int panel, int y) {
   const EnvironmentProjector& p = map.projector();
   Harmonics sum{};
   double weight = 0;
   for (int x = 0; x < p.width; ++x) {
     if (x == 0 || p.projection != EnvironmentProjection::Latlong) weight = p.solidAngle(x, y);  // the same all along a row
-    if (weight > 0) addTexel(weight * glm::dvec3(map.at(panel, x, y)), p.directionAt({panel, x + 0.5, y + 0.5}), sum);
+    if (weight > 0) addTexel(weight * glm::dvec3(map.at(panel, x, y)), directions.at(panel, x, y), sum);
   }
   return sum;
 }
@@ -42,9 +42,10 @@ Harmonics ofRow(const EnvironmentMap& map, int panel, int y) {
 
 Harmonics harmonicsOf(const EnvironmentMap& map, raster::Parallel& parallel) {
   const EnvironmentProjector& p = map.projector();
+  const TexelDirections directions(p);
   std::vector<Harmonics> rows(size_t(p.panels()) * size_t(p.height));
   parallel.forRanges(rows.size(), kRowsPerTask, [&](size_t begin, size_t end, int) {
-    for (size_t row = begin; row < end; ++row) rows[row] = ofRow(map, int(row / size_t(p.height)), int(row % size_t(p.height)));
+    for (size_t row = begin; row < end; ++row) rows[row] = ofRow(map, directions, int(row / size_t(p.height)), int(row % size_t(p.height)));
   });
   Harmonics sum{};  // in the order of the rows
   for (const Harmonics& row : rows)

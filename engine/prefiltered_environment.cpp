@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -28,19 +29,18 @@ struct Node {
 };
 
 struct Tree {
-  std::vector<std::vector<Node>> levels;  // from the root of each face, 6 x 1 x 1, to the leaves
+  std::vector<LargeVector<Node>> levels;  // from the root of each face, 6 x 1 x 1, to the leaves
   const Node& at(size_t level, int face, int x, int y) const {
     return levels[level][(size_t(face) << (2 * level)) + (size_t(y) << level) + size_t(x)];
   }
 };
 
 // As sums: middle and brightest are not of unit length yet.
-Node leafOf(const EnvironmentMap& map, int face, int x, int y) {
-  const EnvironmentProjector& p = map.projector();
+Node leafOf(const EnvironmentMap& map, double solidAngle, int face, int x, int y) {
   Node n;
-  n.solidAngle = p.solidAngle(x, y);
+  n.solidAngle = solidAngle;
   n.light = n.solidAngle * glm::dvec3(map.at(face, x, y));
-  const glm::dvec3 d = p.directionAt({face, x + 0.5, y + 0.5});
+  const glm::dvec3 d = map.projector().directionAt({face, x + 0.5, y + 0.5});
   n.middle = n.solidAngle * d;
   n.brightest = (n.light.x + n.light.y + n.light.z) * d;
   return n;
@@ -60,25 +60,30 @@ void finish(Node& n) {
 
 Tree treeOf(const EnvironmentMap& cube, raster::Parallel& parallel) {
   const EnvironmentMap map = convertEnvironment(cube, {EnvironmentProjection::Cube, kLeaves, kLeaves}, parallel);
+  std::vector<double> solidAngles(size_t(kLeaves) * kLeaves);  // the same on each face
+  parallel.forRanges(kLeaves, 8, [&](size_t begin, size_t end, int) {
+    for (size_t y = begin; y < end; ++y)
+      for (size_t x = 0; x < kLeaves; ++x) solidAngles[y * kLeaves + x] = map.projector().solidAngle(int(x), int(y));
+  });
   Tree tree;
   size_t last = 0;
   while ((1 << last) < kLeaves) ++last;
   tree.levels.resize(last + 1);
   for (size_t level = last + 1; level-- > 0;) {
-    std::vector<Node>& nodes = tree.levels[level];
+    LargeVector<Node>& nodes = tree.levels[level];
     nodes.resize(size_t(6) << (2 * level));
     parallel.forRanges(size_t(6) << level, 8, [&](size_t begin, size_t end, int) {
       for (size_t row = begin; row < end; ++row)
         for (int x = 0; x < 1 << level; ++x) {
           const int face = int(row >> level), y = int(row & ((size_t(1) << level) - 1));
           Node& n = nodes[(row << level) + size_t(x)];
-          if (level == last) n = leafOf(map, face, x, y);
+          if (level == last) n = leafOf(map, solidAngles[size_t(y) * kLeaves + size_t(x)], face, x, y);
           else
             for (int k = 0; k < 4; ++k) addTo(n, tree.at(level + 1, face, 2 * x + (k & 1), 2 * y + (k >> 1)));
         }
     });
   }
-  for (std::vector<Node>& nodes : tree.levels)
+  for (LargeVector<Node>& nodes : tree.levels)
     parallel.forRanges(nodes.size(), 1024, [&](size_t begin, size_t end, int) {
       for (size_t k = begin; k < end; ++k) finish(nodes[k]);
     });
@@ -156,10 +161,8 @@ EnvironmentMap averagedMap(const Tree& tree, int side, double roughness, raster:
   return map;
 }
 
-void append(PrefilteredEnvironment& to, const EnvironmentMap& level) {
-  to.sides.push_back(level.projector().width);
-  to.texels.insert(to.texels.end(), level.texels().begin(), level.texels().end());
-}
+// Of a cube with its border.
+size_t texelsOf(int side) { return 6 * size_t(side + 2) * size_t(side + 2); }
 
 }  // namespace
 
@@ -167,20 +170,23 @@ post::EnvironmentChain PrefilteredEnvironment::view() const {
   post::EnvironmentChain chain;
   chain.levels = int(sides.size());
   std::copy(sides.begin(), sides.end(), chain.sizes);
-  chain.texels = texels;
+  chain.texels = {texels.data(), texels.size()};
   return chain;
 }
 
-PrefilteredEnvironment mirrorOf(const EnvironmentMap& cube) {
-  PrefilteredEnvironment out;
-  append(out, cube);
-  return out;
-}
+PrefilteredEnvironment mirrorOf(EnvironmentMap cube) { return {{cube.projector().width}, std::move(cube).taken()}; }
 
-PrefilteredEnvironment prefiltered(const EnvironmentMap& cube, raster::Parallel& parallel) {
-  PrefilteredEnvironment out = mirrorOf(cube);
+PrefilteredEnvironment prefiltered(EnvironmentMap cube, raster::Parallel& parallel) {
   const Tree tree = treeOf(cube, parallel);
-  for (int k = 1; k < kLevels; ++k) append(out, averagedMap(tree, kSides[k], k / double(kLevels - 1), parallel));
+  PrefilteredEnvironment out = mirrorOf(std::move(cube));
+  size_t all = out.texels.size();
+  for (int k = 1; k < kLevels; ++k) all += texelsOf(kSides[k]);
+  out.texels.reserve(all);
+  for (int k = 1; k < kLevels; ++k) {
+    const EnvironmentMap level = averagedMap(tree, kSides[k], k / double(kLevels - 1), parallel);
+    out.sides.push_back(kSides[k]);
+    out.texels.insert(out.texels.end(), level.texels().begin(), level.texels().end());
+  }
   return out;
 }
 

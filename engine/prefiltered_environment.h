@@ -17,7 +17,7 @@ namespace obscura::engine {
 //   L(r, q) = integral of L(l) D(h) max(0, r . l) dl over the same of D(h) max(0, r . l) dl,   h between r and l
 struct PrefilteredEnvironment {
   std::vector<int> sides;         // texels a side of a face, by level: none, one (the mirror alone) or post::kRoughnessLevels
-  std::vector<glm::vec3> texels;  // level by level, as post::EnvironmentChain has them
+  LargeVector<glm::vec3> texels;  // level by level, as post::EnvironmentChain has them
 
   bool empty() const { return sides.empty(); }
   bool hasReflections() const { return int(sides.size()) == post::kRoughnessLevels; }
@@ -25,7 +25,7 @@ struct PrefilteredEnvironment {
 };
 
 // `cube` has its borders. Level 0 alone.
-PrefilteredEnvironment mirrorOf(const EnvironmentMap& cube);
+PrefilteredEnvironment mirrorOf(EnvironmentMap cube);
 
 // All levels. The lobe's integral is a sum over the sphere's parts: nodes of a quadtree of the map reduced to 128 texels a
 // face, the smaller the nearer they are to the lobe's core. A node's light arrives from where its light is (the mean of its
@@ -33,6 +33,6 @@ PrefilteredEnvironment mirrorOf(const EnvironmentMap& cube);
 // float. Against direct integration over all texels of the cube each level errs by less than 1 %: root mean square over the
 // mean, for a sky with a sun of 10 degrees radius, and with one of 1 degree that is 30 times as bright. What is the same
 // everywhere stays that but for roundings (10^-5). The same bits for any number of threads.
-PrefilteredEnvironment prefiltered(const EnvironmentMap& cube, raster::Parallel& parallel);
+PrefilteredEnvironment prefiltered(EnvironmentMap cube, raster::Parallel& parallel);
 
 }  // namespace obscura::engine

@@ -166,8 +166,14 @@ Double2 atanOfRatio(double y, double x) {
   const Double2 back = twoProduct(r, below.hi);
   const double rLo = (((above.hi - back.hi) - back.lo) + (above.lo - r * below.lo)) / below.hi;
   const double z = r * r;
-  double p = 0;
-  for (int d = 17; d >= 3; d -= 2) p = (d % 4 == 3 ? -1.0 : 1.0) / d + z * p;
+  double p = 1.0 / 17.0;
+  p = p * z - 1.0 / 15.0;
+  p = p * z + 1.0 / 13.0;
+  p = p * z - 1.0 / 11.0;
+  p = p * z + 1.0 / 9.0;
+  p = p * z - 1.0 / 7.0;
+  p = p * z + 1.0 / 5.0;
+  p = p * z - 1.0 / 3.0;
   const Double2 head = twoSum(kArctangents[k].hi, r);
   return twoSum(head.hi, head.lo + (kArctangents[k].lo + (r * z * p + rLo)));
 }
