@@ -133,7 +133,7 @@ std::string truthFile(const std::string& folder, const std::string& key) { retur
 std::optional<Truth> loadTruth(const std::string& file, const std::string& key, int width, int height,
                                int quantities) {
   const size_t size = size_t(width) * size_t(height) * 4 * 2 * size_t(quantities);
-  const std::optional<std::vector<uint8_t>> bytes = engine::loadCached(file, titleOf(key, width, height), size);
+  const std::optional<engine::LargeVector<uint8_t>> bytes = engine::loadCached(file, titleOf(key, width, height), size);
   if (!bytes || bytes->size() != size) return std::nullopt;
   Truth t(width, height, quantities);
   const uint8_t* from = bytes->data();

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
 
+#include "obscura/engine/large_vector.h"
 #include "obscura/engine/result.h"
 #include "obscura/raster/span.h"
 
@@ -17,9 +17,13 @@ std::string hashOf(raster::Span<const uint8_t> bytes);
 
 // `title` says what is in the file: the kind and version of it and a hash of all that it follows from; at most 4096 bytes.
 // Empty if there is no such file, or it is not whole: its title, length (above `most` bytes) or checksum is wrong.
-std::optional<std::vector<uint8_t>> loadCached(const std::string& file, const std::string& title, uint64_t most);
+// What is read counts as used now.
+std::optional<LargeVector<uint8_t>> loadCached(const std::string& file, const std::string& title, uint64_t most);
 
-// Makes the folder if need be. Written beside and renamed: a reader never sees half a file.
-Result<Done> storeCached(const std::string& file, const std::string& title, raster::Span<const uint8_t> bytes);
+// Makes the folder if need be. Written beside and renamed: a reader never sees half a file. Where the folder's kept files, those
+// named KIND-HASH....bin with 32 hex digits, are more than `most` bytes together, those go that were used the longest ago, but not
+// this one. Other processes may read, write and delete there at the same time: what is gone is made again.
+constexpr uint64_t kMostInFolder = uint64_t(1) << 30;
+Result<Done> storeCached(const std::string& file, const std::string& title, raster::Span<const uint8_t> bytes, uint64_t most = kMostInFolder);
 
 }  // namespace obscura::engine

@@ -22,19 +22,19 @@ size_t texelsOf(const std::vector<int>& sides) {
 // Sequences of plain values.
 class Writer {
  public:
-  explicit Writer(std::vector<uint8_t>& to) : to_(to) {}
+  explicit Writer(LargeVector<uint8_t>& to) : to_(to) {}
   void put(const void* values, size_t bytes) {
     const auto* from = static_cast<const uint8_t*>(values);
     to_.insert(to_.end(), from, from + bytes);
   }
 
  private:
-  std::vector<uint8_t>& to_;
+  LargeVector<uint8_t>& to_;
 };
 
 class Reader {
  public:
-  explicit Reader(const std::vector<uint8_t>& from) : from_(from) {}
+  explicit Reader(const LargeVector<uint8_t>& from) : from_(from) {}
   bool take(void* values, size_t bytes) {
     if (bytes > left()) return false;
     if (bytes > 0) std::memcpy(values, from_.data() + at_, bytes);  // an environment without cubes has no place for texels
@@ -44,7 +44,7 @@ class Reader {
   size_t left() const { return from_.size() - at_; }
 
  private:
-  const std::vector<uint8_t>& from_;
+  const LargeVector<uint8_t>& from_;
   size_t at_ = 0;
 };
 
@@ -66,7 +66,7 @@ EnvironmentCache::EnvironmentCache(const std::string& folder, raster::Span<const
 }
 
 std::optional<Environment> EnvironmentCache::load() const {
-  const std::optional<std::vector<uint8_t>> bytes = loadCached(file_, title_, kMostBytes);
+  const std::optional<LargeVector<uint8_t>> bytes = loadCached(file_, title_, kMostBytes);
   if (!bytes) return std::nullopt;
   Reader from(*bytes);
   Environment e;
@@ -85,14 +85,15 @@ std::optional<Environment> EnvironmentCache::load() const {
 }
 
 void EnvironmentCache::store(const Environment& made) const {
-  std::vector<uint8_t> bytes;
+  LargeVector<uint8_t> bytes;
+  bytes.reserve(sizeof made.harmonics + 64 + made.cubes.texels.size() * sizeof(glm::vec3));
   Writer to(bytes);
   const uint64_t clamped = made.clamped;
   to.put(made.harmonics.data(), sizeof made.harmonics);
   to.put(&clamped, sizeof clamped);
   to.put(made.cubes.sides.data(), made.cubes.sides.size() * sizeof(int));
   to.put(made.cubes.texels.data(), made.cubes.texels.size() * sizeof(glm::vec3));
-  (void)storeCached(file_, title_, bytes);  // what cannot be kept is made again
+  (void)storeCached(file_, title_, {bytes.data(), bytes.size()});  // what cannot be kept is made again
 }
 
 }  // namespace obscura::engine

@@ -1,9 +1,12 @@
 // Environments that are kept: the same again, and never anything else.
 #include <catch2/catch.hpp>
 
+#include <atomic>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include "obscura/engine/content_cache.h"
 #include "obscura/engine/environment_cache.h"
@@ -15,6 +18,7 @@ using engine::Environment;
 using Parts = engine::EnvironmentParts;
 using Projection = engine::EnvironmentProjection;
 using Bytes = std::vector<uint8_t>;
+using Words = std::vector<std::string>;
 
 namespace {
 
@@ -130,4 +134,57 @@ TEST_CASE("environment cache: a folder that cannot be made is no error") {
   p.cache = p.map + "/cache";  // below a file
   const Environment made = *engine::readEnvironment(p.map, Projection::Latlong, Parts::Background, 2);
   CHECK(same(p.read(Parts::Background), made));
+}
+
+namespace {
+
+// Files of 1000 bytes each that were used so many hours ago.
+std::string kept(const TemporaryFolder& folder, char digit, int hours) {
+  const std::string file = folder / ("kind-" + std::string(32, digit) + ".bin");
+  REQUIRE(engine::storeCached(file, "kind", Bytes(1000 - 4 - 34, uint8_t(digit))).ok());
+  REQUIRE(std::filesystem::file_size(file) == 1000);
+  std::filesystem::last_write_time(file, std::filesystem::file_time_type::clock::now() - std::chrono::hours(hours));
+  return file;
+}
+
+}  // namespace
+
+TEST_CASE("content cache: beyond its size what was used the longest ago goes, and nothing that is not its own") {
+  const TemporaryFolder folder;
+  const std::string oldest = kept(folder, 'a', 9), read = kept(folder, 'b', 8), older = kept(folder, 'c', 7), young = kept(folder, 'd', 1);
+  Words others;
+  for (const char* name : {"notes.bin", "kind-0.bin", "kind-00000000000000000000000000000000.txt", "-00000000000000000000000000000000.bin", "kind-0000000000000000000000000000000g.bin"}) {
+    others.push_back(folder / name);
+    put(others.back(), Bytes(5000));
+    std::filesystem::last_write_time(others.back(), std::filesystem::file_time_type::clock::now() - std::chrono::hours(99));
+  }
+  CHECK(engine::loadCached(read, "kind", 1000));  // used now
+  const std::string added = folder / ("kind-" + std::string(32, 'e') + ".bin");
+  REQUIRE(engine::storeCached(added, "kind", Bytes(966), 3100).ok());
+  CHECK_FALSE(std::filesystem::exists(oldest));
+  CHECK_FALSE(std::filesystem::exists(older));
+  for (const std::string& file : {read, young, added}) CHECK(std::filesystem::exists(file));
+  for (const std::string& file : others) CHECK(std::filesystem::exists(file));
+  REQUIRE(engine::storeCached(added, "kind", Bytes(2000), 1000).ok());  // larger than all that may be: alone
+  for (const std::string& file : {read, young}) CHECK_FALSE(std::filesystem::exists(file));
+  CHECK(engine::loadCached(added, "kind", 2000));
+}
+
+TEST_CASE("content cache: many that read, write and delete at once see whole files or none") {
+  const TemporaryFolder folder;
+  std::atomic<int> wrong{0}, found{0};
+  std::vector<std::thread> users;
+  for (int user = 0; user < 4; ++user)
+    users.emplace_back([&, user] {
+      for (int k = 0; k < 60; ++k) {
+        const char digit = char('a' + (k + user) % 6);
+        const std::string file = folder / ("kind-" + std::string(32, digit) + ".bin");
+        if (const auto bytes = engine::loadCached(file, "kind", 3000)) ++found, wrong += bytes->size() != 2000 || bytes->front() != uint8_t(digit) || bytes->back() != uint8_t(digit);
+        else wrong += !engine::storeCached(file, "kind", Bytes(2000, uint8_t(digit)), 6200).ok();
+      }
+    });
+  for (std::thread& user : users) user.join();
+  CHECK(wrong == 0);
+  CHECK(found > 0);
+  CHECK(folder.files() <= 6);
 }
