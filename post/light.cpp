@@ -115,6 +115,11 @@ HWY_INLINE MF seenAt(const raster::GBuffer& g, int x, int y) {
   return hn::Lt(hn::LoadU(DF(), g.depth.row(y) + x), hn::Set(DF(), kInfinity));
 }
 
+HWY_INLINE bool isZero(const V3& v) {
+  const DF d;
+  return hn::AllTrue(d, hn::Eq(hn::Max(hn::Max(v.x, v.y), v.z), hn::Zero(d)));  // v >= 0
+}
+
 // R_A(v), or its two parts where each gets another light.
 struct Reflectances {
   V3 ambient, mirrored;
@@ -149,7 +154,8 @@ void lightRows(const LightInput& in, int y0, int y1, LinearColor& out) {
         continue;
       }
       const Ambients arriving = ambient.at(x, y);
-      const Reflectances r = reflectances<kBrdf>(g, directions, mirrors, x, y);
+      const bool dark = isGlossy(kBrdf) && !mirrors && !bounced && isZero(arriving.la);  // so is what is reflected of it, R_A being finite
+      const Reflectances r = dark ? Reflectances{arriving.la, arriving.la} : reflectances<kBrdf>(g, directions, mirrors, x, y);
       const VF channels[3] = {arriving.la.x, arriving.la.y, arriving.la.z}, colors[3] = {r.ambient.x, r.ambient.y, r.ambient.z};
       const VF mirrored[3] = {r.mirrored.x, r.mirrored.y, r.mirrored.z};
       const VF factors[3] = {arriving.factor.x, arriving.factor.y, arriving.factor.z};

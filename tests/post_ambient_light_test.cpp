@@ -183,3 +183,26 @@ TEST_CASE("ambient light: every variant equals its scalar twin, with every W") {
     }
   }
 }
+
+TEST_CASE("ambient light: where there is none, glossy things have their own emission alone, as the twin says, beside others that are lit") {
+  for (uint32_t seed = 0; seed < 6; ++seed) {
+    const TestScene s = soupScene(seed);
+    std::vector<glm::vec3> table;
+    for (size_t i = 0; i < s.instances.size(); ++i) table.push_back(i % 3 ? glm::vec3(0) : glm::vec3(0, 0, 0.5f));
+    AmbientLight ambient(glm::vec3(0));
+    if (seed % 2) ambient.instances = table;
+    AmbientSettings settings;
+    settings.radius = 1;
+    const auto with = [&](const std::optional<raster::Target>& target) {
+      PostFrame f;
+      f.g = gbufferOf(s);
+      runPost(f, s.camera, settings, target, post::Occlusion::Transfer, true, ambient, post::Brdf::Gltf);
+      return f;
+    };
+    const PostFrame expected = with(std::nullopt);
+    for (raster::Target target : raster::supportedTargets()) {
+      INFO("seed " << seed << " target " << raster::targetName(target));
+      REQUIRE(firstDifference(with(target), expected) == "");
+    }
+  }
+}
