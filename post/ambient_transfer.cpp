@@ -282,18 +282,21 @@ class Kernel {
   Hits hits_;
 };
 
+// More than the depth map is rare enough that one step has no kernel of its own then: each takes seconds to compile.
+template <class Points, bool kPerspective, bool kOneStep, bool kReads>
+TransferStatistics rowsOf(const TransferInput& in, int y0, int y1, TransferSums& out) {
+  if (!in.implicits.empty() || (!in.heights.empty() && !in.g->heightMap.empty()))
+    return Kernel<Points, kPerspective, false, kReads, true>(in, out).rows(y0, y1);
+  return Kernel<Points, kPerspective, kOneStep, kReads, false>(in, out).rows(y0, y1);
+}
+
 template <bool kPerspective, bool kOneStep, bool kReads>
 TransferStatistics transferRows(const TransferInput& in, int y0, int y1, TransferSums& out) {
-  const bool more = !in.implicits.empty() || (!in.heights.empty() && !in.g->heightMap.empty());
-  if constexpr (!kOneStep)
-    if (in.settings.estimator == Estimator::March)
-      return more ? Kernel<MarchedRays, kPerspective, false, kReads, true>(in, out).rows(y0, y1)
-                  : Kernel<MarchedRays, kPerspective, false, kReads, false>(in, out).rows(y0, y1);
-  if (in.settings.estimator != Estimator::Paper)
-    return more ? Kernel<DealtPoints, kPerspective, kOneStep, kReads, true>(in, out).rows(y0, y1)
-                : Kernel<DealtPoints, kPerspective, kOneStep, kReads, false>(in, out).rows(y0, y1);
-  return more ? Kernel<SharedPoints, kPerspective, kOneStep, kReads, true>(in, out).rows(y0, y1)
-              : Kernel<SharedPoints, kPerspective, kOneStep, kReads, false>(in, out).rows(y0, y1);
+  switch (in.settings.estimator) {
+    case Estimator::Paper: return rowsOf<SharedPoints, kPerspective, kOneStep, kReads>(in, y0, y1, out);
+    case Estimator::March: return rowsOf<MarchedRays, kPerspective, false, kReads>(in, y0, y1, out);
+    default: return rowsOf<DealtPoints, kPerspective, kOneStep, kReads>(in, y0, y1, out);
+  }
 }
 
 template <bool kPerspective, bool kOneStep>
@@ -304,7 +307,7 @@ TransferStatistics transferRows(const TransferInput& in, int y0, int y1, Transfe
 }
 
 TransferStatistics AmbientTransfer(const TransferInput& in, int y0, int y1, TransferSums& out) {
-  const bool oneStep = in.settings.steps == 1 && in.settings.estimator != Estimator::March;
+  const bool oneStep = in.settings.steps == 1;
   if (in.projector.perspective)
     return oneStep ? transferRows<true, true>(in, y0, y1, out) : transferRows<true, false>(in, y0, y1, out);
   return oneStep ? transferRows<false, true>(in, y0, y1, out) : transferRows<false, false>(in, y0, y1, out);
