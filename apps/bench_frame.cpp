@@ -27,7 +27,7 @@ constexpr Column kColumns[] = {
 }  // namespace
 
 void asPeersCompute(FrameOptions& options) {
-  engine::setQuality(options.transfer, options.quality = engine::Quality::Paper);
+  post::setQuality(options.transfer, options.quality = post::Quality::Paper);
   options.transfer.albedo = post::TransferAlbedo::Neighbour;
   options.radius = 0.5;
   options.bias = 0.005;

@@ -161,7 +161,7 @@ void addAmbient(CLI::App& app, FrameOptions& o) {
               nameOf(kQualityNames, o.quality) + "]",
           [&o](const std::string& text) {
             for (const auto& [name, quality] : kQualityNames)
-              if (name == text) return engine::setQuality(o.transfer, o.quality = quality), true;
+              if (name == text) return post::setQuality(o.transfer, o.quality = quality), true;
             return false;
           })
       ->group(group);

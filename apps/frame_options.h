@@ -12,9 +12,9 @@
 #include "obscura/engine/camera_choice.h"
 #include "obscura/engine/frame.h"
 #include "obscura/engine/gltf.h"
-#include "obscura/engine/quality.h"
 #include "obscura/engine/result.h"
 #include "obscura/engine/scene.h"
+#include "obscura/post/quality.h"
 #include "obscura/raster/rasterizer.h"
 
 namespace obscura::apps {
@@ -67,14 +67,14 @@ struct FrameOptions {
   bool displacement = true;
   post::Brdf brdf = post::Brdf::Gltf;
   post::Occlusion ambient = post::Occlusion::Transfer;
-  engine::Quality quality = engine::Quality::Standard;
+  post::Quality quality = post::Quality::Standard;
   post::AmbientSettings transfer;                          // but for three of the lengths below; set by `quality`, then by options of their own
   std::optional<double> radius, bias, filterThreshold;     // scene units; empty: a fraction of the scene's size
   std::optional<double> separation;                        // of the second depth layer, alike
   raster::Settings raster;
   bool reference = false;
 
-  FrameOptions() { engine::setQuality(transfer, quality); }
+  FrameOptions() { post::setQuality(transfer, quality); }
 
   // Values that cannot be are refused while parsing, with a CLI::ValidationError.
   void addTo(CLI::App& app);

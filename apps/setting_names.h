@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "obscura/engine/environment_projection.h"
-#include "obscura/engine/quality.h"
 #include "obscura/post/brdf.h"
+#include "obscura/post/quality.h"
 #include "obscura/post/settings.h"
 #include "obscura/post/tone_map.h"
 
@@ -23,11 +23,11 @@ inline const Names<post::Membership> kMembershipNames = {{"classic", post::Membe
 inline const Names<post::Estimator> kEstimatorNames = {
     {"paper", post::Estimator::Paper}, {"sobol", post::Estimator::Sobol}, {"box", post::Estimator::Box}, {"lines", post::Estimator::Lines},
     {"march", post::Estimator::March}};
-inline const Names<engine::Quality> kQualityNames = {{"draft", engine::Quality::Draft},
-                                                     {"standard", engine::Quality::Standard},
-                                                     {"high", engine::Quality::High},
-                                                     {"reference", engine::Quality::Reference},
-                                                     {"paper", engine::Quality::Paper}};
+inline const Names<post::Quality> kQualityNames = {{"draft", post::Quality::Draft},
+                                                     {"standard", post::Quality::Standard},
+                                                     {"high", post::Quality::High},
+                                                     {"reference", post::Quality::Reference},
+                                                     {"paper", post::Quality::Paper}};
 inline const Names<post::FilterGuide> kFilterGuideNames = {{"depth", post::FilterGuide::Depth},
                                                            {"plane", post::FilterGuide::Plane}};
 

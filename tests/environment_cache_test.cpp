@@ -89,7 +89,7 @@ TEST_CASE("environment cache: another map, projection or part is another file, a
 
 TEST_CASE("environment cache: a file that is cut, longer or differs in any part is ignored and written again") {
   const Place p;
-  const Environment made = p.read();
+  const Environment made = p.read(Parts::Background);
   const std::string file = p.files().at(0);
   const Bytes whole = bytesOf(file);
   std::vector<Bytes> broken = {{}, {'x'}, Bytes(whole.begin(), whole.end() - 1), Bytes(whole.begin(), whole.begin() + 60), whole};
@@ -97,8 +97,8 @@ TEST_CASE("environment cache: a file that is cut, longer or differs in any part 
   for (size_t k = 0; k < whole.size(); k += k < 200 ? 23 : whole.size() / 9) broken.push_back(whole), broken.back()[k] ^= 4;
   for (const Bytes& bytes : broken) {
     put(file, bytes);
-    CHECK_FALSE(p.kept().load());
-    CHECK(same(p.read(), made));
+    CHECK_FALSE(p.kept(Parts::Background).load());
+    CHECK(same(p.read(Parts::Background), made));
     CHECK(bytesOf(file) == whole);
   }
 }

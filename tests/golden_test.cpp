@@ -18,9 +18,9 @@
 #include "obscura/engine/ambient_directions.h"
 #include "obscura/engine/camera_choice.h"
 #include "obscura/engine/extended_ambient.h"
-#include "obscura/engine/quality.h"
 #include "obscura/engine/gltf.h"
 #include "obscura/engine/image_file.h"
+#include "obscura/post/quality.h"
 #include "obscura/raster/parallel.h"
 #include "obscura/tests/scene_of_glb.h"
 
@@ -211,7 +211,7 @@ TEST_CASE("golden: the same with thresholded highlights of Blinn-Phong, lit by s
 
 TEST_CASE("golden: the demo scene by the standard quality, rays marched through the depth map") {
   engine::FrameSettings s = frameOf(160, 120);
-  engine::setQuality(s.transfer, engine::Quality::Standard);
+  post::setQuality(s.transfer, post::Quality::Standard);
   checkGolden("standard", s);
 }
 
@@ -233,7 +233,7 @@ TEST_CASE("golden: threads, targets, tile sizes, skipping and the scalar twins g
     std::vector<std::string> expected = digests({}, true);
     for (raster::Target target : raster::supportedTargets())
       for (int tile : {16, 32, 64})
-        for (int count : {1, 2, 3, 8})
+        for (int count : {1, 3, 8})
           for (bool skip : {true, false}) {
             INFO(raster::targetName(target) << ", tile " << tile << ", " << count << " threads, skip " << skip
                                             << "; repeat: obscura render SCENE --digest --target " << raster::targetName(target)
@@ -273,6 +273,7 @@ TEST_CASE("golden: supersampled frames, too, have one digest for threads, target
       for (raster::Target target : raster::supportedTargets())
         for (int tile : {16, 64})
           for (int count : {1, 3, 8}) {
+            if (tile == 64 && count != 8) continue;
             INFO(raster::targetName(target) << ", tile " << tile << ", " << count << " threads, supersample " << supersample);
             REQUIRE(digests({count, target, tile, count != 3}, false) == expected);
           }

@@ -88,6 +88,7 @@ TEST_CASE("occlusion: a crowd drawn front to back has the bits of the reference,
         for (int tile : {16, 32, 64})
           for (int count : {1, 3})
             for (bool skip : {true, false}) {
+              if (!skip && (tile != 32 || count != 3)) continue;  // drawn whole, it takes the longest and is no other crowd
               INFO(targetName(target) << " tile " << tile << " threads " << count << " skip " << skip);
               Statistics q;
               REQUIRE(firstDifference(render(s, {count, target, tile, skip}, &q), expected) == "");

@@ -1,13 +1,13 @@
-#include "obscura/engine/quality.h"
+#include "obscura/post/quality.h"
 
-namespace obscura::engine {
+namespace obscura::post {
 
-void setQuality(post::AmbientSettings& settings, Quality quality) {
-  post::AmbientSettings chosen;
+void setQuality(AmbientSettings& settings, Quality quality) {
+  AmbientSettings chosen;
   const auto march = [&](int samples, int steps, int layers) {
-    chosen.estimator = post::Estimator::March;
+    chosen.estimator = Estimator::March;
     chosen.samples = samples, chosen.steps = steps, chosen.layers = layers;
-    chosen.filterGuide = post::FilterGuide::Plane;
+    chosen.filterGuide = FilterGuide::Plane;
   };
   switch (quality) {
     case Quality::Paper: break;
@@ -23,4 +23,4 @@ void setQuality(post::AmbientSettings& settings, Quality quality) {
   settings.filterGuide = chosen.filterGuide;
 }
 
-}  // namespace obscura::engine
+}  // namespace obscura::post
