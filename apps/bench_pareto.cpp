@@ -206,14 +206,8 @@ int ParetoBenchmark::run() {
     all.push_back(std::move(*scene));
   }
   progress.finish();
-  if (!csv.empty())
-    if (const auto done = writeText(csv, csvOf(all)); !done) return fail(done.error());
-  if (!plot.empty())
-    if (const auto done = writeParetoPlot(plot, all); !done) return fail(done.error());
-  std::string text = json ? jsonOf(all) : "";
-  for (size_t k = 0; k < all.size() && !json; ++k) text += (k ? "\n" : "") + tableOf(all[k]);
-  std::fputs(text.c_str(), stdout);
-  return 0;
+  const auto done = writeScenes(all, csv, plot, json, writeParetoPlot);
+  return done ? 0 : fail(done.error());
 }
 
 }  // namespace obscura::apps

@@ -1,7 +1,9 @@
 // What the benchmarks of errors share when they write their results.
 #pragma once
 
+#include <cstdio>
 #include <string>
+#include <vector>
 
 #include "obscura/engine/image.h"
 #include "obscura/engine/result.h"
@@ -20,5 +22,20 @@ constexpr char kMapHelp[] =
 // From 0 on, of text that counts from 1. Usage: it names none of so many.
 engine::Result<size_t> mapRow(const std::string& text, size_t rows);
 engine::Result<engine::Done> writeErrorMap(const std::string& path, engine::Image map);
+
+// All rows of all scenes: csvOf() them to one file, plotted to another, where these are named; tableOf() each, or jsonOf() all,
+// to standard output.
+template <class Scene, class Plot>
+engine::Result<engine::Done> writeScenes(const std::vector<Scene>& scenes, const std::string& csv, const std::string& plot, bool json,
+                                         const Plot& writePlot) {
+  if (!csv.empty())
+    if (const auto done = writeText(csv, csvOf(scenes)); !done) return done.error();
+  if (!plot.empty())
+    if (const auto done = writePlot(plot, scenes); !done) return done.error();
+  std::string text = json ? jsonOf(scenes) : "";
+  for (size_t k = 0; k < scenes.size() && !json; ++k) text += (k ? "\n" : "") + tableOf(scenes[k]);
+  std::fputs(text.c_str(), stdout);
+  return engine::Done{};
+}
 
 }  // namespace obscura::apps

@@ -24,6 +24,7 @@ class MarchedRays : public DealtPoints {
   MarchedRays(const TransferInput& in, int) : DealtPoints(in, 1) {
     const std::vector<RayMarch> marches = rayMarches(in.settings, in.offsets);
     const size_t perRow = marches.size() / 16;
+    rows_.reserve(4 * perRow);
     for (size_t row = 0; row < 4; ++row)
       for (size_t i = 0; i < perRow; ++i) {
         Four four;

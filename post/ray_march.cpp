@@ -12,6 +12,7 @@ std::vector<RayMarch> rayMarches(const AmbientSettings& settings, const std::vec
   const raster::FloatEnvironment environment;
   const float endless = std::numeric_limits<float>::infinity(), base = kShell * settings.radius;
   std::vector<RayMarch> out;
+  out.reserve(offsets.size());
   for (const glm::vec3& o : offsets) {
     const uint32_t turn = uint32_t(out.size()) * 2654435769u;  // 2^32 times the golden section
     const float u = float(turn >> 8) * 0x1p-24f, soft = 1 + kShellSpread * (2 * u - 1);
