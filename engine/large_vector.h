@@ -5,13 +5,11 @@
 #include <new>
 #include <vector>
 
-#if defined(__linux__)
-#include <sys/mman.h>
-#endif
+#include "obscura/raster/large_memory.h"
 
 namespace obscura::engine {
 
-// From 2 MB on in huge pages where the system has them, as planes are: touching new memory page by page takes longer than filling it.
+// As planes have it, see raster/large_memory.h.
 template <class T>
 struct LargeAllocator {
   using value_type = T;
@@ -21,15 +19,8 @@ struct LargeAllocator {
   LargeAllocator(const LargeAllocator<U>&) {}
 
   T* allocate(size_t count) {
-    constexpr size_t kHuge = size_t(2) << 20;
-    if (count > size_t(-1) / 2 / sizeof(T)) throw std::bad_alloc();
-    const size_t bytes = count * sizeof(T), unit = bytes >= kHuge ? kHuge : 64;
-    void* memory = std::aligned_alloc(unit, (bytes + unit - 1) / unit * unit);
-    if (!memory) throw std::bad_alloc();
-#if defined(__linux__)
-    if (unit == kHuge) madvise(memory, bytes, MADV_HUGEPAGE);
-#endif
-    return static_cast<T*>(memory);
+    if (count > size_t(-1) / sizeof(T)) throw std::bad_alloc();
+    return static_cast<T*>(raster::allocateLarge(count * sizeof(T)));
   }
   void deallocate(T* memory, size_t) { std::free(memory); }
 

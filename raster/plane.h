@@ -7,9 +7,7 @@
 #include <memory>
 #include <new>
 
-#if defined(__linux__)
-#include <sys/mman.h>
-#endif
+#include "obscura/raster/large_memory.h"
 
 namespace obscura::raster {
 
@@ -26,16 +24,7 @@ class Plane {
   Plane(int width, int height)
       : width_(width), height_(height), stride_((size_t(width) * sizeof(T) + 63) / 64 * 64 / sizeof(T)) {
     const size_t bytes = stride_ * size_t(height) * sizeof(T);
-    if (bytes == 0) return;
-    // Large planes in huge pages where the system has them: touching a plane for the first time costs as much as a pass
-    // over it otherwise.
-    constexpr size_t kHuge = size_t(2) << 20;
-    const bool large = bytes >= kHuge;
-    data_.reset(static_cast<T*>(std::aligned_alloc(large ? kHuge : 64, large ? (bytes + kHuge - 1) / kHuge * kHuge : bytes)));
-    if (!data_) throw std::bad_alloc();
-#if defined(__linux__)
-    if (large) madvise(data_.get(), bytes, MADV_HUGEPAGE);
-#endif
+    if (bytes > 0) data_.reset(static_cast<T*>(allocateLarge(bytes)));
   }
 
   // Gives it this size; what it holds afterwards is unspecified. Memory of the right size is kept.
